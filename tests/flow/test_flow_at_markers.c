@@ -9,8 +9,6 @@
 #include "flow/flow_at_bodies.h"
 #include "school.h"
 
-const bool school_small = true;
-
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 #define SHEET "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n"
 
@@ -231,7 +229,7 @@ TEST(a_wake_acts_on_another_with_its_own_depth) {
 }
 
 #define MIRRORED(y, heading, phase)                                                                \
-    "force: pressure, nodes: 7, sheet_points: 21, pressure: {span: finite}, wave: {phase: " #phase \
+    "force: pressure, nodes: 7, sheet_points: 26, pressure: {span: finite}, wave: {phase: " #phase \
     "}, "                                                                                          \
     "start: {position: [0, " #y "], heading: " #heading "}"
 

@@ -9,13 +9,11 @@
 #include "school.h"
 #include "third_kernel.h"
 
-const bool school_small = true;
-
-#define TIME SCHOOL_DEFAULTS "time: {end: 1, shedding_interval: 0.02}\ncontact: {action: warn}\n"
-#define ONE "fish: [{nodes: 5, sheet_points: 21, force: pressure, pressure: {span: %s}}]\n"
+#define TIME "time: {end: 1, shedding_interval: 0.02}\ncontact: {action: warn}\n"
+#define ONE "fish: [{nodes: 5, sheet_points: 26, force: pressure, pressure: {span: %s}}]\n"
 #define TWO                                                                                \
     "fish:\n"                                                                              \
-    "  - {nodes: 5, sheet_points: 21, force: pressure, pressure: {span: %s}}\n"            \
+    "  - {nodes: 5, sheet_points: 26, force: pressure, pressure: {span: %s}}\n"            \
     "  - {nodes: 6, sheet_points: 23, force: reactive, length: 0.8, body: {depth: 0.4},\n" \
     "     start: {position: [0.2, 0.6], heading: 165}}\n"
 
@@ -497,7 +495,6 @@ TEST(legs_of_graded_points_begin_at_the_tail) {
 static void build_large(struct setup *setup, const char *tolerance, int n) {
     char text[1024];
     snprintf(text, sizeof text,
-             SCHOOL_DEFAULTS
              "time: {end: 1, shedding_interval: 0.02}\nwake: {tolerance: %s}\nfluid: {walls: [-1.5]}\n"
              "contact: {action: warn}\n"
              "defaults: {fish: {nodes: 25, sheet_points: 199, force: pressure, pressure: {span: %s}}}\nfish:\n"
@@ -715,7 +712,6 @@ TEST(a_steady_wake_is_fine_as_far_as_the_tail_of_a_long_fish) {
     for (int n_fish = 2; n_fish <= 3; n_fish++) {
         struct setup setup = setup_of(arena_text(
             test_arena(),
-            SCHOOL_DEFAULTS
             "time: {end: 1, shedding_interval: 0.01}\nfluid: {velocity: [1, 0]}\n"
             "defaults: {fish: {nodes: 5, force: pressure, pressure: {span: finite}, motion: {prescribed: all}, "
             "wave: {frequency: 0}}}\n"

@@ -6,8 +6,6 @@
 #include "flow/kernel.h"
 #include "school.h"
 
-const bool school_small = true;
-
 static const double pi = 3.14159265358979323846;
 
 static const struct walls below = {1, {-0.4}, {1}}, above = {1, {1.1}, {-1}}, channel = {2, {-0.4, 1.1}, {1, -1}};

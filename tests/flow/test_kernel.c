@@ -6,8 +6,6 @@
 #include "flow/kernel.h"
 #include "school.h"
 
-const bool school_small = true;
-
 static const double two_pi = 6.28318530717958647692;
 
 // one source, and what it causes at a point

@@ -6,8 +6,6 @@
 #include "school.h"
 #include "third_kernel.h"
 
-const bool school_small = true;
-
 enum { PER_WAKE = 300, MOST_FISH = 256, MOST = PER_WAKE * MOST_FISH, SUMS = KERNEL_SUMS };
 
 static uint64_t seed;

@@ -5,8 +5,6 @@
 #include "flow/tree_boxes.h"
 #include "school.h"
 
-const bool school_small = true;
-
 enum { N = 3000, LEAF = 50 };
 
 static double x[N], y[N], weight[N];

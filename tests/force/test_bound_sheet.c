@@ -6,9 +6,10 @@
 #include "force/bound_sheet.h"
 #include "school.h"
 
-const bool school_small = true;
-
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+#define SMALL TIME "defaults: {fish: {nodes: 7}}\n"
+// a sheet that sheds vortices at its last point: with midpoints and a rate, too
+#define CLASSIC "wake: {shedding: continuous}\n"
 #define FAR "solver: {coupling_distance: 100}\n"
 
 static const double pi = 3.14159265358979323846;
@@ -49,17 +50,18 @@ static void jacobian_of_sheet(struct setup *setup, double cj, const double *y, s
 
 TEST(derivatives_agree_with_differences) {
     const char *const texts[] = {
-        TIME "fish: [{sheet_points: 9}]\n",
-        TIME "sheet: {collocation: midpoint}\nfish: [{sheet_points: 21}]\n",
-        TIME "fluid: {velocity: [0.3, -0.2], shear: 0.7}\nfish: [{sheet_points: 5, nodes: 9}]\n",
-        TIME "sheet: {curve: smooth}\nfish: [{sheet_points: 9}]\n",
-        TIME "wake: {shedding: sheet}\nfish: [{sheet_points: 9}]\n",
-        TIME "sheet: {curve: smooth, collocation: midpoint}\nfish: [{sheet_points: 15, nodes: 4}]\n",
-        TIME FAR
-        "sheet: {curve: smooth}\nfish:\n  - {sheet_points: 9}\n"
-        "  - {nodes: 5, sheet_points: 13, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n",
-        TIME FAR
-        "sheet: {collocation: midpoint}\nfish:\n  - {sheet_points: 9}\n"
+        SMALL "fish: [{}]\n",
+        SMALL CLASSIC "sheet: {collocation: midpoint}\nfish: [{force: reactive, sheet_points: 21}]\n",
+        TIME "fluid: {velocity: [0.3, -0.2], shear: 0.7}\nfish: [{force: reactive, sheet_points: 5, nodes: 9}]\n",
+        SMALL CLASSIC "fish: [{force: reactive, sheet_points: 9}]\n",
+        SMALL CLASSIC "sheet: {curve: polygon}\nfish: [{force: reactive, sheet_points: 9}]\n",
+        TIME CLASSIC
+        "sheet: {curve: polygon, collocation: midpoint}\nfish: [{force: reactive, sheet_points: 15, nodes: 4}]\n",
+        SMALL FAR
+        "fish:\n  - {}\n"
+        "  - {nodes: 5, force: reactive, sheet_points: 13, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n",
+        SMALL CLASSIC FAR
+        "sheet: {curve: polygon, collocation: midpoint}\nfish:\n  - {sheet_points: 9}\n"
         "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
         "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200}}\n"};
     const enum bound_sheet_law laws[] = {BOUND_SHEET_EDGE, BOUND_SHEET_RATE, BOUND_SHEET_FROZEN};
@@ -75,10 +77,11 @@ TEST(derivatives_agree_with_differences) {
 // Bound circulations q (m) of a plate at rest along x in the stream (cos alpha, sin alpha). The smoothing of the free
 // vortex is so wide that the vortex induces no velocity: only the bound sheet remains.
 static void solve_plate(const char *collocation, const char *kutta, int m, const char *more, double *q) {
-    struct setup setup = setup_with(TIME
+    struct setup setup = setup_with(SMALL
                                     "fluid: {velocity: [0.8, 0.6]%s}\n"
-                                    "wake: {smoothing: 1.0e+9}\nsheet: {collocation: %s, kutta: %s}\n"
-                                    "fish: [{sheet_points: %d, start: {speed: 0}, motion: {prescribed: all}}]\n",
+                                    "wake: {shedding: continuous, smoothing: 1.0e+9}\n"
+                                    "sheet: {collocation: %s, kutta: %s}\n"
+                                    "fish: [{force: reactive, sheet_points: %d, motion: {prescribed: all}}]\n",
                                     more, collocation, kutta, m);
     school_consistent(&setup, 0);
     const struct fish *fish = setup.school->fish;
@@ -140,8 +143,10 @@ TEST(plate_with_midpoints_converges) {
 
 // bound circulation of a plate beside a vortex of circulation 1 at (0.4, 0.3) with smoothing 0.2
 static double circulation_beside_a_vortex(int m) {
-    struct setup setup = setup_with(
-        TIME "wake: {smoothing: 0.2}\nfish: [{sheet_points: %d, start: {speed: 0}, motion: {prescribed: all}}]\n", m);
+    struct setup setup = setup_with(SMALL
+                                    "wake: {shedding: continuous, smoothing: 0.2}\nfish: [{force: reactive, "
+                                    "sheet_points: %d, motion: {prescribed: all}}]\n",
+                                    m);
     wake_release(&setup.state->wake[0], 0.4, 0.3, 1, 0);
     school_consistent(&setup, 0);
     const double circulation = bound_sheet_circulation(setup.school->fish, setup.state->y);
@@ -166,10 +171,12 @@ TEST(chebyshev_points_converge_spectrally) {
  * place: positions of the nodes as functions of the arc length. Shed circulation induces no velocity. */
 typedef void line(double s, double place[2]);
 static double circulation_of_a_bent_body(line *place, const char *curve, int n_nodes, int m) {
-    struct setup setup = setup_with(TIME
-                                    "fluid: {velocity: [%.17g, %.17g]}\nwake: {smoothing: 1.0e+9}\nsheet: {curve: %s}\n"
-                                    "fish: [{nodes: %d, sheet_points: %d, wave: {amplitude: 0}, start: {speed: 0}}]\n",
-                                    cos(pi / 18), sin(pi / 18), curve, n_nodes, m);
+    struct setup setup =
+        setup_with(TIME
+                   "fluid: {velocity: [%.17g, %.17g]}\nwake: {shedding: continuous, smoothing: 1.0e+9}\n"
+                   "sheet: {curve: %s}\n"
+                   "fish: [{force: reactive, nodes: %d, sheet_points: %d, wave: {amplitude: 0}}]\n",
+                   cos(pi / 18), sin(pi / 18), curve, n_nodes, m);
     const struct fish *fish = setup.school->fish;
     for (int k = 0; k < n_nodes; k++) {
         double at[2];
@@ -240,7 +247,7 @@ TEST(smooth_curve_and_polygon_of_a_bent_fish_have_one_limit) {
 
 TEST(strength_is_circulation_per_length_of_the_body_as_it_is) {
     struct setup setup =
-        setup_of(TIME "sheet: {curve: smooth}\nfish: [{sheet_points: 9, length: 1.2, start: {heading: 30}}]\n");
+        setup_of(SMALL "fish: [{force: reactive, sheet_points: 9, length: 1.2, start: {heading: 30}}]\n");
     const struct fish *fish = setup.school->fish;
     double *const y = setup.state->y;
 
@@ -262,11 +269,7 @@ TEST(strength_is_circulation_per_length_of_the_body_as_it_is) {
 TEST(end_correction_makes_a_sheet_that_ends_with_a_step_exact) {
     // a plate along x at rest with the strength s/L, except 0 at the tail point: normal velocity by Cauchy's integral
     for (int m = 5; m <= 33; m += 14) {
-        struct setup setup =
-            setup_with(TIME
-                       "wake: {shedding: sheet}\nsheet: {curve: smooth}\nfish: [{sheet_points: %d, length: 1.2, start: "
-                       "{speed: 0}}]\n",
-                       m);
+        struct setup setup = setup_with(SMALL "fish: [{force: reactive, sheet_points: %d, length: 1.2}]\n", m);
         const struct fish *fish = setup.school->fish;
         double *const y = setup.state->y, with[64];
         for (int j = 1; j < m - 1; j++) y[fish->at.gamma + j] = fish_mean(&fish->sheet_point[j], fish->arc) / 1.2;
@@ -288,7 +291,8 @@ TEST(end_correction_makes_a_sheet_that_ends_with_a_step_exact) {
 }
 
 TEST(kelvin_counts_bound_shed_and_dissipated_circulation) {
-    struct setup setup = setup_stirred(TIME "fish: [{sheet_points: 9}]\n");
+    struct setup setup =
+        setup_stirred(SMALL CLASSIC "sheet: {curve: polygon}\nfish: [{force: reactive, sheet_points: 9}]\n");
     school_flow(&setup, setup.state->y);
     const struct fish *fish = setup.school->fish;
     const double *u, *v;
@@ -302,7 +306,8 @@ TEST(kelvin_counts_bound_shed_and_dissipated_circulation) {
 }
 
 TEST(shedding_rate_is_edge_strength_times_slip) {
-    struct setup setup = setup_stirred(TIME "fish: [{sheet_points: 9}]\n");
+    struct setup setup =
+        setup_stirred(SMALL CLASSIC "sheet: {curve: polygon}\nfish: [{force: reactive, sheet_points: 9}]\n");
     school_flow(&setup, setup.state->y);
     const struct fish *fish = setup.school->fish;
     const double *const y = setup.state->y, *u, *v;

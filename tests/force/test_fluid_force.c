@@ -8,9 +8,8 @@
 #include "force/fluid_force.h"
 #include "school.h"
 
-const bool school_small = true;
-
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+#define SMALL TIME "defaults: {fish: {nodes: 7}}\n"
 #define FAR "solver: {coupling_distance: 100}\n"
 
 static void per_mass(const struct fish *fish, double *value) {
@@ -47,27 +46,28 @@ static void jacobian_of_forces(struct setup *setup, double cj, const double *y, 
 
 TEST(jacobian_agrees_with_differences) {
     const char *const texts[] = {
-        TIME "fish: [{sheet_points: 9}]\n",
-        TIME "fish: [{sheet_points: 9, drag: {law: linear_quadratic, tangential: 0.3}}]\n",
-        TIME "fish: [{sheet_points: 9, drag: {tangential: 0.3}, added_mass: {extent: depth}}]\n",
-        TIME
+        SMALL "fish: [{force: published, sheet_points: 9}]\n",
+        SMALL "fish: [{force: published, sheet_points: 9, drag: {law: linear_quadratic, tangential: 0.3}}]\n",
+        SMALL "fish: [{force: published, sheet_points: 9, drag: {tangential: 0.3}, added_mass: {extent: thickness}}]\n",
+        SMALL
         "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
-        "fish: [{sheet_points: 9, drag: {law: linear_quadratic}, added_mass: {extent: depth}}]\n",
-        TIME "fish: [{sheet_points: 9, force: reactive}]\n",
-        TIME
+        "fish: [{force: published, sheet_points: 9, drag: {law: linear_quadratic}}]\n",
+        SMALL "fish: [{sheet_points: 9, force: reactive}]\n",
+        SMALL
         "fish: [{sheet_points: 9, force: reactive, drag: {normal: 0, tangential: 0}, added_mass: {extent: depth}}]\n",
 
         // swimming backwards: no flux along a leading tail
-        TIME "fish: [{sheet_points: 9, force: reactive, start: {speed: -2}, added_mass: {extent: depth}}]\n",
-        TIME
+        SMALL "fish: [{sheet_points: 9, force: reactive, start: {speed: -2}, added_mass: {extent: depth}}]\n",
+        SMALL
         "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
         "fish: [{sheet_points: 9, force: reactive, body: {section: mean}, \n"
         "        drag: {law: linear_quadratic, linear_speed: 0.7}, added_mass: {extent: depth}}]\n",
         TIME FAR
-        "fish:\n  - {sheet_points: 9}\n"
+        "fish:\n  - {nodes: 7, force: published, sheet_points: 9}\n"
         "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170},\n"
         "     force: reactive, drag: {law: linear_quadratic}, added_mass: {extent: depth}}\n"
-        "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200}}\n"};
+        "  - {nodes: 9, force: published, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: "
+        "200}}\n"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         struct setup setup = setup_stirred(texts[i]);
         school_compare(&setup, value_of_forces, jacobian_of_forces, texts[i]);
@@ -76,7 +76,8 @@ TEST(jacobian_agrees_with_differences) {
 
 // total force (fx, fy) on a plate along the heading 180 degrees that moves with (vx, vy) in still fluid
 static void force_on_plate(const char *keys, double vx, double vy, double ay, double force[2]) {
-    struct setup setup = setup_with(TIME "fish: [{body: {profile: uniform, thickness: 0.1}, %s}]\n", keys);
+    struct setup setup =
+        setup_with(SMALL "fish: [{body: {profile: uniform, thickness: 0.1, depth: 0.25}, %s}]\n", keys);
     const struct fish *fish = setup.school->fish;
     for (int k = 0; k < fish->n_nodes; k++) {
         setup.state->y[fish->at.vx + k] = vx;
@@ -94,33 +95,37 @@ static void force_on_plate(const char *keys, double vx, double vy, double ay, do
     }
 }
 
+#define ADDED "added_mass: {coefficient: 1.5, extent: thickness}"
+
 TEST(forces_on_a_plate_are_the_formulas) {
     // rho 1000, L 1, h 0.1, w 0.25, C_F 0.02, C_D 0.5, C_A 1.5
     const double pi = acos(-1), ct = 1000 * pi * 0.02 * 0.35 / 8, cn = 1000 * 0.5 * 0.1 / 2,
                  mu = pi * 1000 * 1.5 * 0.01 / 4;
     double force[2];
-    force_on_plate("drag: {tangential: 0.02}", -2, 0, 0, force);
+    force_on_plate("force: published, " ADDED ", drag: {tangential: 0.02, normal: 0.5}", -2, 0, 0, force);
     NEAR(force[0], 4 * ct, 1e-12, 1e-13);
     NEAR(force[1], 0, 1e-12, 0);
-    force_on_plate("drag: {tangential: 0.02}", 0, 3, 0, force);
+    force_on_plate("force: published, " ADDED ", drag: {tangential: 0.02, normal: 0.5}", 0, 3, 0, force);
     NEAR(force[0], 0, 1e-12, 0);
     NEAR(force[1], -9 * cn, 0, 1e-13);
-    force_on_plate("drag: {tangential: 0.02, law: linear_quadratic}", -2, 3, 0, force);
+    force_on_plate("force: published, " ADDED ", drag: {tangential: 0.02, normal: 0.5, law: linear_quadratic}", -2, 3,
+                   0, force);
     NEAR(force[0], 6 * ct, 0, 1e-13);
     NEAR(force[1], -12 * cn, 0, 1e-13);
-    force_on_plate("drag: {tangential: 0.02}", 0, 0, 5, force);
+    force_on_plate("force: published, " ADDED ", drag: {tangential: 0.02, normal: 0.5}", 0, 0, 5, force);
     NEAR(force[1], -5 * mu, 0, 1e-13);
 
     // whole wetted surface; linear speed of 0.4 lengths per beat at 1.5 beats per second
-    force_on_plate("force: reactive, drag: {tangential: 0.02}, added_mass: {coefficient: 0}", -2, 0, 0, force);
+    force_on_plate("force: reactive, drag: {tangential: 0.02, normal: 0.5}, added_mass: {coefficient: 0}", -2, 0, 0,
+                   force);
     NEAR(force[0], 8 * ct, 0, 1e-13);
     force_on_plate(
-        "force: reactive, wave: {frequency: 1.5}, drag: {tangential: 0.02, "
-        "law: linear_quadratic, linear_speed: 0.4}, added_mass: {coefficient: 0}",
+        "force: reactive, wave: {frequency: 1.5}, drag: {tangential: 0.02, normal: 0.5, "
+        "law: linear_quadratic, linear_speed: 0.4}, added_mass: {coefficient: 0, extent: thickness}",
         -2, 3, 0, force);
     NEAR(force[0], 2 * 2 * 2.6 * ct, 0, 1e-13);
     NEAR(force[1], -3 * 3.6 * cn, 0, 1e-13);
-    force_on_plate("force: reactive, drag: {tangential: 0.02}", 0, 0, 5, force);
+    force_on_plate("force: reactive, " ADDED, 0, 0, 5, force);
     NEAR(force[1], -5 * mu, 0, 1e-13);
 }
 
@@ -128,7 +133,7 @@ TEST(powers_are_those_of_the_forces) {
     const char *const forces[] = {"published", "reactive"};
     for (int i = 0; i < 2; i++) {
         struct setup setup =
-            setup_with(TIME
+            setup_with(SMALL
                        "fluid: {shear: 0.5, velocity: [0, 0.3]}\n"
                        "fish: [{sheet_points: 9, force: %s, drag: {tangential: 0.3}, added_mass: {extent: depth}}]\n",
                        forces[i]);
@@ -154,9 +159,9 @@ TEST(powers_are_those_of_the_forces) {
 
 TEST(friction_is_the_tangential_part_of_the_drag) {
     const double about[2] = {0.3, -0.7};
-    struct setup setup = setup_stirred(TIME
+    struct setup setup = setup_stirred(SMALL
                                        "fluid: {shear: 0.5, velocity: [0, 0.3]}\n"
-                                       "fish: [{sheet_points: 9, drag: {tangential: 0.3}}]\n");
+                                       "fish: [{}]\n");
     school_flow(&setup, setup.state->y);
     const struct fish *fish = setup.school->fish;
     const struct flow_at_body flow = flow_at_body(setup.residual->flow, 0);
@@ -181,7 +186,7 @@ TEST(friction_is_the_tangential_part_of_the_drag) {
 }
 
 TEST(added_mass_takes_up_no_tangential_acceleration) {
-    struct setup setup = setup_of(TIME "fish: [{start: {speed: 0}}]\n");
+    struct setup setup = setup_of(SMALL "fish: [{start: {speed: 0}}]\n");
     const struct fish *fish = setup.school->fish;
     for (int k = 0; k < fish->n_nodes; k++) setup.state->y[fish->at.ax + k] = 3;
     const double still[64] = {0};
@@ -200,11 +205,10 @@ TEST(the_reactive_force_does_not_feel_the_own_wake) {
     } cases[] = {{"reactive", 0.05}, {"reactive", 0.1}, {"reactive", 0.4}, {"published", 0.05}, {"published", 0.4}};
     double nose[5][2];
     for (int i = 0; i < 5; i++) {
-        struct simulation *const simulation =
-            school_simulation_of(SCHOOL_DEFAULTS
-                                 "time: {end: 1, shedding_interval: 0.02}\nwake: {smoothing: %g}\n"
-                                 "fish: [{nodes: 9, sheet_points: 17, force: %s}]\n",
-                                 cases[i].smoothing, cases[i].force);
+        struct simulation *const simulation = school_simulation_of(
+            "time: {end: 1, shedding_interval: 0.02}\nwake: {smoothing: %g}\n"
+            "fish: [{nodes: 9, sheet_points: 17, force: %s}]\n",
+            cases[i].smoothing, cases[i].force);
         school_run(simulation, 1);
         const struct fish *const fish = simulation->school->fish;
         nose[i][0] = simulation->state->y[fish->at.x];

@@ -9,8 +9,6 @@
 #include "force/pressure.h"
 #include "school.h"
 
-const bool school_small = true;
-
 static const double pi = 3.14159265358979323846;
 
 enum { MAX_NODES = 33 };
@@ -19,7 +17,6 @@ enum { MAX_NODES = 33 };
 static void build_plate(struct setup *setup, int nodes, int points, const char *more) {
     char text[1024];
     snprintf(text, sizeof text,
-             SCHOOL_DEFAULTS
              "time: {end: 1, shedding_interval: 0.002}\nfluid: {density: 1, viscosity: 0}\n"
              "fish: [{nodes: %d, sheet_points: %d, force: pressure, pressure: {span: infinite}, wave: {amplitude: 0, "
              "frequency: 0},\n        body: {profile: uniform, thickness: 0.1, depth: 1, %s}}]\n",
@@ -115,7 +112,6 @@ TEST(added_mass_of_a_plate_of_finite_span_lies_between_slender_and_deep) {
         struct setup setup;
         char text[1024];
         snprintf(text, sizeof text,
-                 SCHOOL_DEFAULTS
                  "time: {end: 1, shedding_interval: 0.002}\nfluid: {density: 1, viscosity: 0}\n"
                  "fish: [{nodes: 17, sheet_points: 65, force: pressure, pressure: {span: finite},\n"
                  "  wave: {amplitude: 0, frequency: 0}, body: {profile: uniform, thickness: 0.1, depth: %g}}]\n",
@@ -153,7 +149,6 @@ TEST(added_mass_of_finite_span_is_symmetric_and_positive) {
         struct setup setup;
         char text[1024];
         snprintf(text, sizeof text,
-                 SCHOOL_DEFAULTS
                  "time: {end: 1, shedding_interval: 0.002}\nfluid: {density: 1, viscosity: 0}\n"
                  "fish: [{nodes: 9, sheet_points: 65, force: pressure, pressure: {span: finite},\n"
                  "        wave: {amplitude: 0, frequency: 0}, body: {%s}}]\n",
@@ -212,7 +207,6 @@ TEST(a_stream_that_starts_at_once_pushes_by_the_added_mass) {
     const double mass = 0.1;
     snprintf(body, sizeof body, "density: %.17g, modulus: 1.0e+9, relaxation_time: 0.01", mass / (pi / 4 * 0.1));
     struct simulation *const simulation = school_simulation_of(
-        SCHOOL_DEFAULTS
         "time: {end: 1, shedding_interval: 0.002}\nfluid: {density: 1, viscosity: 0, velocity: [0, 0.1]}\n"
         "fish: [{nodes: 17, force: pressure, pressure: {span: infinite}, wave: {amplitude: 0, frequency: 0},\n"
         "        body: {profile: uniform, thickness: 0.1, depth: 1, %s}}]\n",
@@ -239,7 +233,6 @@ TEST(momenta_scale_with_the_deeper_end) {
         struct setup setup;
         char text[512];
         snprintf(text, sizeof text,
-                 SCHOOL_DEFAULTS
                  "time: {end: 1, shedding_interval: 0.02}\nfluid: {density: 800}\n"
                  "fish: [{nodes: 5, sheet_points: 21, length: 2, force: pressure, pressure: {span: infinite}, body: "
                  "{profile: table,\n    thickness_table: [0.1, 0.1, 0.1, 0.1], depth_table: [%s]}}]\n",
@@ -256,12 +249,11 @@ TEST(momenta_scale_with_the_deeper_end) {
 // the force on the nodes equals the integral of the jump along the line, and the reactions of a prescribed body balance
 // this force
 TEST(force_and_reaction_are_those_of_the_jump) {
-    struct simulation *const simulation =
-        school_simulation(SCHOOL_DEFAULTS
-                          "time: {end: 1, shedding_interval: 0.01}\nfluid: {density: 2, viscosity: 0}\n"
-                          "fish: [{force: pressure, pressure: {span: infinite}, wave: {amplitude: 0, frequency: 0}, "
-                          "start: {speed: 1}, body: {profile: uniform, thickness: 0.1, depth: 0.5},\n"
-                          "        motion: {prescribed: all, heave: 0.05, pitch: 5, frequency: 1}}]\n");
+    struct simulation *const simulation = school_simulation(
+        "time: {end: 1, shedding_interval: 0.01}\nfluid: {density: 2, viscosity: 0}\n"
+        "fish: [{force: pressure, pressure: {span: infinite}, wave: {amplitude: 0, frequency: 0}, "
+        "start: {speed: 1}, body: {profile: uniform, thickness: 0.1, depth: 0.5},\n"
+        "        motion: {prescribed: all, heave: 0.05, pitch: 5, frequency: 1}}]\n");
     school_measure(simulation, 0.3);
     const struct fish *fish = simulation->school->fish;
     const struct diagnostics_fish *of = simulation->diagnostics->fish;
@@ -307,7 +299,6 @@ TEST(force_and_reaction_are_those_of_the_jump) {
 
 TEST(the_pressure_acts_on_the_depth_of_an_edge) {
     struct simulation *const simulation = school_simulation(
-        SCHOOL_DEFAULTS
         "time: {end: 1, shedding_interval: 0.01}\n"
         "fish: [{nodes: 5, sheet_points: 21, pressure: {span: infinite}, body: {profile: table, thickness_table: [.1, "
         ".1, .1, .1], depth_table: [.2, .3, .5, .4]}, motion: {prescribed: all, pitch: 5, frequency: 1}}]\n");
@@ -339,9 +330,8 @@ TEST(forces_turn_with_the_fish_and_a_stream_carries_them) {
         for (int i = 0; i < 3; i++) {
             const double a = frames[i].heading * pi / 180, stream = frames[i].stream;
             struct simulation *const simulation = school_simulation_of(
-                SCHOOL_DEFAULTS
                 "time: {end: 1, shedding_interval: 0.01}\nfluid: {velocity: [%g, 0]}\nsolver: {rtol: 1.0e-9}\n"
-                "fish: [{nodes: 7, sheet_points: 21, pressure: {span: %s}, start: {speed: %g, heading: %g}}]\n",
+                "fish: [{nodes: 7, sheet_points: 26, pressure: {span: %s}, start: {speed: %g, heading: %g}}]\n",
                 stream, spans[k], 0.8 + stream, frames[i].heading);
             school_measure(simulation, 0.1);
             const struct diagnostics_fish *const of = simulation->diagnostics->fish;
@@ -406,7 +396,6 @@ TEST(suction_law_has_a_value_at_rest) {
 // a plate at an incidence in a stream, with this suction limit; the caller frees the setup
 static struct simulation *inclined_plate(double degrees, double limit) {
     struct simulation *const simulation = school_simulation_of(
-        SCHOOL_DEFAULTS
         "time: {end: 1, shedding_interval: 0.01}\nfluid: {density: 2, viscosity: 0}\n"
         "fish: [{force: pressure, pressure: {span: infinite, suction: 0.8, suction_limit: %g}, wave: {amplitude: "
         "0, frequency: 0},\n        start: {speed: 3}, body: {profile: uniform, thickness: 0.1, depth: 0.5},\n"
@@ -462,7 +451,6 @@ TEST(energy_balance_is_closed_where_the_limit_acts) {
     double imbalance[2];
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation = school_simulation_of(
-            SCHOOL_DEFAULTS
             "time: {end: 2, shedding_interval: 0.02}\n"
             "fish: [{nodes: 9, sheet_points: 17, force: pressure, pressure: {span: infinite, suction_limit: %g},\n"
             "        body: {modulus: 3.0e+5}, wave: {ramp: 0.3}, start: {speed: 0.5}}]\n",
@@ -523,10 +511,10 @@ TEST(a_strength_that_is_singular_at_the_tail_has_no_kink) {
 // g = sin(theta) (1 - cos(theta)) has the kink of a sheet that goes on behind the tail: C = (1 - cos(theta))^2/2, for
 // the rate of the circulation and, with finite span, for the flow that diverges
 TEST(a_kink_at_the_tail_has_its_exact_circulation) {
-    struct setup setup = setup_of(SCHOOL_DEFAULTS
-                                  "time: {end: 1, shedding_interval: 0.01}\n"
-                                  "fish: [{nodes: 17, sheet_points: 33, force: pressure, pressure: {span: finite},\n"
-                                  "        body: {profile: uniform, thickness: 0.1, depth: 1}}]\n");
+    struct setup setup = setup_of(
+        "time: {end: 1, shedding_interval: 0.01}\n"
+        "fish: [{nodes: 17, sheet_points: 33, force: pressure, pressure: {span: finite},\n"
+        "        body: {profile: uniform, thickness: 0.1, depth: 1}}]\n");
     const struct fish *const fish = setup.school->fish;
     struct pressure *const pressure = setup.residual->pressure[0];
     double *const y = setup.state->y, *const yp = setup.state->yp, zero[64] = {0}, div[64];
@@ -551,11 +539,10 @@ TEST(a_kink_at_the_tail_has_its_exact_circulation) {
 
 // a soft free fish starts to beat: energy balance, and momentum against forces
 TEST(energy_and_momentum_of_a_free_fish_are_accounted_for) {
-    struct simulation *const simulation =
-        school_simulation(SCHOOL_DEFAULTS
-                          "time: {end: 1, shedding_interval: 0.01}\nsolver: {rtol: 1.0e-6}\n"
-                          "fish: [{nodes: 9, sheet_points: 17, force: pressure, pressure: {span: infinite}, body: "
-                          "{modulus: 3.0e+4}, wave: {ramp: 0.3}, start: {speed: 0.5}}]\n");
+    struct simulation *const simulation = school_simulation(
+        "time: {end: 1, shedding_interval: 0.01}\nsolver: {rtol: 1.0e-6}\n"
+        "fish: [{nodes: 9, sheet_points: 17, force: pressure, pressure: {span: infinite}, body: "
+        "{modulus: 3.0e+4}, wave: {ramp: 0.3}, start: {speed: 0.5}}]\n");
     const struct fish *fish = simulation->school->fish;
     const struct diagnostics_fish *of = simulation->diagnostics->fish;
 

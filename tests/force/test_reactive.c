@@ -9,9 +9,8 @@
 #include "force/reactive.h"
 #include "school.h"
 
-const bool school_small = true;
-
 #define TIME "time: {end: 60, shedding_interval: 0.05}\n"
+#define SMALL TIME "defaults: {fish: {nodes: 7}}\n"
 // free vortices with this smoothing induce velocities of 1e-12 m/s: the fluid is still
 #define STILL "wake: {smoothing: 1.0e+6}\n"
 #define NO_DRAG "tangential: 0, normal: 0"
@@ -92,7 +91,7 @@ TEST(force_follows_from_lagrange_s_equations_of_the_kinetic_energy) {
 }
 
 TEST(a_stream_that_accelerates_acts_as_a_body_that_does_not_and_pushes_what_it_surrounds) {
-    struct setup setup = setup_stirred(TIME "fish: [{force: reactive, added_mass: {extent: depth}}]\n");
+    struct setup setup = setup_stirred(SMALL "fish: [{force: reactive, added_mass: {extent: depth}}]\n");
     const struct fish *fish = setup.school->fish;
     const double u[2] = {0.4, -0.3}, b[2] = {1.1, 0.7}, still[2] = {0, 0};
     for (int k = 0; k < fish->n_edges; k++) {
@@ -102,7 +101,7 @@ TEST(a_stream_that_accelerates_acts_as_a_body_that_does_not_and_pushes_what_it_s
         reactive_force(fish, k, &edge, w, b, in_stream);
         for (int i = 0; i < 2; i++) edge.acceleration[i] -= b[i];
         reactive_force(fish, k, &edge, w, still, at_rest);
-        const double displaced = 1000 * pi * fish->thickness[k] * 0.25 / 4 / 6;
+        const double displaced = 1000 * pi * fish->thickness[k] * 0.2 / 4 / 6;
         for (int end = 0; end < 2; end++) {
             for (int i = 0; i < 2; i++) NEAR(in_stream[end][i], at_rest[end][i] + displaced * b[i] / 2, 1e-12, 1e-13);
         }
@@ -112,7 +111,7 @@ TEST(a_stream_that_accelerates_acts_as_a_body_that_does_not_and_pushes_what_it_s
 // forces on the nodes of a straight plate of 7 nodes along the x axis, nose first, with prescribed motion in still
 // fluid
 static void forces_on_plate(const char *motion, double t, double force[7][2]) {
-    struct setup setup = setup_with(TIME
+    struct setup setup = setup_with(SMALL
                                     "fish: [{force: reactive, body: {profile: uniform, thickness: 0.1, depth: 0.3},\n"
                                     "        drag: {" NO_DRAG
                                     "}, added_mass: {extent: depth, coefficient: 1}, motion: {prescribed: all, %s}}]\n",
@@ -217,8 +216,9 @@ TEST(energy_of_body_and_fluid_is_the_work_of_the_muscle) {
     double worst[2] = {0, 0};
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation = school_simulation_of(
-            TIME STILL "solver: {rtol: %g}\nfish: [{force: reactive, start: {speed: 0.5}, drag: {" NO_DRAG
-                       "}, body: {modulus: 1.0e+5, relaxation_time: 0, " NO_DAMPING "}}]\n",
+            SMALL STILL "solver: {rtol: %g}\nfish: [{force: reactive, start: {speed: 0.5}, drag: {" NO_DRAG
+                        "}, added_mass: {extent: thickness}, body: {tail_thickness: 0, modulus: 1.0e+5, "
+                        "relaxation_time: 0, " NO_DAMPING "}}]\n",
             rtol[i]);
         const double before = whole_energy(measured(simulation));
         while (simulation->state->t < 2) {
@@ -248,10 +248,10 @@ TEST(no_fish_gains_energy_from_still_fluid) {
         const double amplitude = 0.4 + 0.2 * school_random(&random), number = 8 * school_random(&random);
         const double frequency = 1 + 0.5 * school_random(&random), quadratic = school_random(&random);
         struct simulation *const simulation =
-            school_simulation_of(TIME STILL "fish: [{force: reactive, start: {speed: 0}, drag: {" NO_DRAG
-                                            "}, added_mass: {extent: %s},\n"
-                                            "  body: {modulus: 1.0e+5, relaxation_time: 0.001, " NO_DAMPING
-                                            "}, wave: {amplitude: %g, number: %g, frequency: %g, quadratic: %g}}]\n",
+            school_simulation_of(SMALL STILL "fish: [{force: reactive, start: {speed: 0}, drag: {" NO_DRAG
+                                             "}, added_mass: {extent: %s},\n"
+                                             "  body: {modulus: 1.0e+5, relaxation_time: 0.001, " NO_DAMPING
+                                             "}, wave: {amplitude: %g, number: %g, frequency: %g, quadratic: %g}}]\n",
                                  i % 2 == 0 ? "depth" : "thickness", amplitude, number, frequency, quadratic);
         double gained = 0, fastest = 0;
         while (simulation->state->t < 10) {
@@ -273,12 +273,13 @@ TEST(no_fish_gains_energy_from_still_fluid) {
 // a fish in still fluid without dissipation that beats from the start
 static struct simulation *ideal_fish(double amplitude, double number, double phase) {
     char text[512];
-    snprintf(text, sizeof text,
-             "time: {end: 60, shedding_interval: 0.05}\n" STILL
-             "solver: {method: rk4, step: 0.001}\nfish: [{force: reactive, start: {speed: 0}, drag: {" NO_DRAG
-             "}, body: {modulus: 2.0e+4, relaxation_time: 0, " NO_DAMPING
-             "}, wave: {ramp: 0, amplitude: %g, number: %g, phase: %g}}]\n",
-             amplitude, number, phase);
+    snprintf(
+        text, sizeof text,
+        "time: {end: 60, shedding_interval: 0.05}\n" STILL
+        "solver: {method: rk4, step: 0.001}\nfish: [{nodes: 7, force: reactive, drag: {" NO_DRAG
+        "}, added_mass: {extent: thickness}, body: {tail_thickness: 0, modulus: 2.0e+4, relaxation_time: 0, " NO_DAMPING
+        "}, wave: {ramp: 0, amplitude: %g, number: %g, phase: %g}}]\n",
+        amplitude, number, phase);
     return school_simulation(text);
 }
 

@@ -4,19 +4,16 @@
 #include "force/pressure.h"
 #include "school.h"
 
-const bool school_small = true;
-
 static const double pi = 3.14159265358979323846;
 
 // a straight body in steady motion: p = U^2/2 (1 - s/(s + r/2)), the pressure of a stagnation point at the nose
 TEST(a_body_that_glides_reads_the_stagnation_pressure_at_the_nose) {
-    struct simulation *const simulation =
-        school_simulation(SCHOOL_DEFAULTS
-                          "time: {end: 1}\nfluid: {density: 2, velocity: [0.5, 0]}\n"
-                          "fish: [{force: pressure, pressure: {span: infinite}, sensors: [0, 0.1, 0.5, 1], wave: "
-                          "{amplitude: 0, frequency: 0},\n"
-                          "        start: {speed: 1}, body: {profile: uniform, thickness: 0.1},\n"
-                          "        motion: {prescribed: all}}]\n");
+    struct simulation *const simulation = school_simulation(
+        "time: {end: 1}\nfluid: {density: 2, velocity: [0.5, 0]}\n"
+        "fish: [{force: pressure, pressure: {span: infinite}, sensors: [0, 0.1, 0.5, 1], wave: "
+        "{amplitude: 0, frequency: 0},\n"
+        "        start: {speed: 1}, body: {profile: uniform, thickness: 0.1},\n"
+        "        motion: {prescribed: all}}]\n");
     school_measure(simulation, 0.5);
     const struct fish *const fish = simulation->school->fish;
     NEAR(fish->nose_radius, 0.005, 0, 1e-12);
@@ -124,7 +121,6 @@ static void compare_with_differences(double t, const char *keys, const char *fis
                                      const struct mirror *mirrors, double bound) {
     enum { MOST = 64 };
     struct simulation *const simulation = school_simulation_of(
-        SCHOOL_DEFAULTS
         "time: {end: 1, shedding_interval: 0.0025}\nsolver: {rtol: 1e-7}\n"
         "wake: {smoothing: 1e-3, lifetime: 0.4, decay: 0.39}\nsheet: {smoothing: 1e-3}\n"
         "%sdefaults: {fish: {force: pressure, start: {speed: 0.5}, nodes: 9, sheet_points: 33, sensors: [0.5],\n"
@@ -176,13 +172,12 @@ TEST(in_a_channel_the_rate_of_the_potential_is_its_difference_in_time) {
 // the pressure on the right less the pressure on the left is the jump at a control point, up to the round nose
 TEST(both_sides_differ_by_the_jump) {
     // sensors at the control points 12, 24 and 36
-    struct simulation *const simulation =
-        school_simulation(SCHOOL_DEFAULTS
-                          "time: {end: 1}\n"
-                          "fish: [{force: pressure, pressure: {span: infinite}, start: {speed: 0.5}, sensors: "
-                          "[0.15820385, 0.51635954, 0.86493204],\n"
-                          "        sheet_points: 49, body: {profile: uniform, thickness: 1e-3}, wave: {ramp: 0.2}},\n"
-                          "       {pressure: {span: infinite}, start: {position: [0.2, 0.4]}}]\n");
+    struct simulation *const simulation = school_simulation(
+        "time: {end: 1}\n"
+        "fish: [{force: pressure, pressure: {span: infinite}, start: {speed: 0.5}, sensors: "
+        "[0.15820385, 0.51635954, 0.86493204],\n"
+        "        sheet_points: 49, body: {profile: uniform, thickness: 1e-3}, wave: {ramp: 0.2}},\n"
+        "       {pressure: {span: infinite}, start: {position: [0.2, 0.4]}}]\n");
     school_measure(simulation, 0.5);
     struct pressure *const pressure = simulation->residual->pressure[0];
     for (int i = 0; i < 3; i++) {
@@ -198,7 +193,6 @@ TEST(mirrored_fish_exchange_left_and_right) {
     struct simulation *two[2];
     for (int i = 0; i < 2; i++) {
         two[i] = school_simulation_of(
-            SCHOOL_DEFAULTS
             "time: {end: 1}\n"
             "defaults: {fish: {force: pressure, pressure: {span: finite}, nodes: 9, start: {speed: 0.5}}}\n"
             "fish: [{sensors: [0.1, 0.7], wave: {phase: %d, ramp: 0.3}},\n"

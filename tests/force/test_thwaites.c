@@ -5,8 +5,6 @@
 #include "force/thwaites.h"
 #include "school.h"
 
-const bool school_small = true;
-
 static const double pi = 3.14159265358979323846;
 static const double viscosity = 1e-5;
 
@@ -93,7 +91,6 @@ static struct simulation *plate(const char *stream, double thickness) {
     char text[600];
     snprintf(
         text, sizeof text,
-        SCHOOL_DEFAULTS
         "time: {end: 2, shedding_interval: 0.02}\nfluid: {density: 1, viscosity: 1e-3, velocity: [%s]}\n"
         "fish: [{force: pressure, pressure: {span: infinite}, sheet_points: 65, wave: {amplitude: 0, frequency: 0},\n"
         "        body: {profile: uniform, thickness: %g, depth: 0.5}, motion: {prescribed: all}}]\n",
@@ -160,7 +157,7 @@ TEST(a_sheet_is_as_strong_as_its_strength_over_its_depth) {
     struct simulation *const simulation = school_simulation(
         "time: {end: 2, shedding_interval: 0.02}\nwake: {shedding: sheet}\nsheet: {curve: smooth}\n"
         "fluid: {viscosity: 1e-3, velocity: [1, 0.1]}\n"
-        "fish: [{force: pressure, pressure: {span: finite}, sheet_points: 33, wave: {amplitude: 0}, motion: "
+        "fish: [{nodes: 7, force: pressure, pressure: {span: finite}, sheet_points: 33, wave: {amplitude: 0}, motion: "
         "{prescribed: all},\n        drag: {skin: laminar}, body: {profile: uniform, depth: 0.25}}]\n");
     school_run(simulation, 0.2);
     struct fish *const fish = &simulation->school->fish[0];
