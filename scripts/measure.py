@@ -633,6 +633,26 @@ def school(bench):
         yield n, f"{spacing[0]:g} x {spacing[1]:g}", reach, *(per_event(run) if run else ["failed", "", ""])
 
 
+@table("fish", "nodes", "unknowns", "entries of the factors, blocks", "klu", "GMRES iterations per event", "CPU time of klu over blocks")
+def linear(bench):
+    """solver.linear blocks against klu: factors and CPU time of close fish at cruising speed (ten minutes)"""
+    for n, nodes, end in ((1, 13, 2), (1, 25, 2), (1, 50, 1), (1, 100, 0.4), (1, 199, 0.2), (4, 13, 1), (4, 25, 1), (4, 50, 0.4),
+                          (4, 100, 0.1), (16, 13, 0.4), (16, 25, 0.2)):
+        text = lattice(n, (1.2, 0.4), end, 0.02, end, f"nodes: {nodes}, start: {{speed: 0.8}}")
+        runs, times = [], [math.inf, math.inf]
+        for repeat in range(3 if n == 1 else 1):
+            for i, kind in enumerate(("blocks", "klu")):
+                before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+                run = bench.run(text, f"solver.linear={kind}", "solver.threads=1")
+                times[i] = min(times[i], resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before)
+                # NetCDF reads lazily: keep the values before the next run replaces the file
+                if repeat == 0:
+                    runs.append((int(run["factor_non_zeros"][-1]), int(run["gmres_iterations"][-1]) / n_events(run),
+                                 int(run["differential_unknowns"].sum() + run["algebraic_unknowns"].sum())))
+        yield (n, nodes, f"{runs[0][2]:,}", f"{runs[0][0]:,}", f"{runs[1][0]:,}", f"{runs[0][1]:.1f}",
+               f"{times[1] / times[0]:.2f}")
+
+
 @table("threads", "same bits as one")
 def threads(bench):
     """bodies and wakes of 64 fish after 0.1 s"""

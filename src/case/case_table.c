@@ -297,6 +297,10 @@ const struct key case_table[] = {
                 "relaxation_time below 1/1000 of the beat period"},
     {"solver.coupling_distance", REAL, AT(school.coupling_distance), "0.5", FROM(0), "",
      .meaning = "distance of two fish up to which the Jacobian couples them, in lengths of the longest fish"},
+    {"solver.linear", CHOICE, AT(school.linear), "blocks", ANY, "",
+     .meaning = "solution of linear systems; blocks: fish by fish, with GMRES for their couplings; klu: one sparse "
+                "matrix of all unknowns, factored by KLU",
+     .words = WORDS("blocks", "klu"), .synonyms = "linear_solver direct preconditioner"},
     {"solver.threads", INTEGER, AT(school.threads), "1", FROM_TO(1, MAX_THREADS), "", .meaning = "number of threads",
      .synonyms = "n_threads cores processes"},
     {"solver.step", REAL, AT(solver.step), "0", FROM(0), "s", .meaning = "fixed step; 0: adaptive steps",

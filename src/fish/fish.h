@@ -213,6 +213,7 @@ struct school {
     enum contact_action contact; /* of bodies with a gap below contact_range */
     double contact_range;        /* m */
     double coupling_distance;    /* m */
+    enum linear_systems linear;  /* of systems with the Jacobian of the school */
     int threads;
 };
 

@@ -113,6 +113,7 @@ static void wake_set(struct school *school, const struct school_parameters *para
         longest = fmax(longest, parameters->fish[f].length);
     }
     school->coupling_distance = parameters->coupling_distance * longest;
+    school->linear = parameters->linear;
     school->contact_range = parameters->contact.range * longest;
 }
 

@@ -21,6 +21,9 @@ enum drag_law { DRAG_QUADRATIC, DRAG_LINEAR_QUADRATIC };
 enum friction { FRICTION_QUADRATIC, FRICTION_LAMINAR, FRICTION_BOUNDARY_LAYER };
 enum extent { EXTENT_THICKNESS, EXTENT_DEPTH };
 enum prescribed { PRESCRIBED_NONE, PRESCRIBED_HEAD, PRESCRIBED_ALL };
+/* Solution of systems with the Jacobian of the school: fish by fish, with GMRES for their couplings, or as one sparse
+ * matrix (solver/linear.h). */
+enum linear_systems { LINEAR_BLOCKS, LINEAR_KLU };
 enum contact_action { CONTACT_REPEL, CONTACT_WARN, CONTACT_STOP };
 enum gust_profile { GUST_UNIFORM, GUST_SINE, GUST_STEP };
 enum surge { SURGE_GIVEN, SURGE_FREE };
@@ -178,6 +181,7 @@ struct school_parameters {
     struct contact_parameters contact;
     double shedding_interval; /* s */
     double coupling_distance; /* body lengths of the longest fish */
+    enum linear_systems linear;
     int threads;
     int n_fish;
     struct fish_parameters *fish;      /* (n_fish) */

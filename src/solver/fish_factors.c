@@ -1,115 +1,19 @@
 /* fish_factors.c: KLU, elimination of the rod, and factors of the full Schur complement. */
 #include "solver/fish_factors.h"
 
-#include <klu.h>
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
 #include "base/wide.h"
+#include "solver/sparse_factors.h"
 
-/* A diagonal pivot keeps the factors sparse. Use a diagonal pivot of at least diagonal_tolerance (the default of KLU)
- * times the largest entry of the column. If the reciprocal pivot growth is then below min_growth, as in soft rods of
- * many nodes, the solution has too few digits for Newton's iteration: use the largest entries as pivots. If the
- * elimination of the rod lets a column of S grow by more than 1/min_growth, KLU factorises the whole block. */
-static const double diagonal_tolerance = 1e-3, min_growth = 1e-6;
-
-/* Keep the pivots of an earlier matrix while reciprocal condition estimate and reciprocal pivot growth are at least
- * this fraction of the values when the pivots were chosen. */
-static const double min_quality = 1e-3;
+/* If the elimination of the rod lets a column of S grow by more than 1/min_growth, KLU factorises the whole block. */
+static const double min_growth = SPARSE_MIN_GROWTH;
 
 /* Without momenta, sheets with at least this many points are treated as full. With fewer points KLU is nearly as fast.
  * Right-hand sides that KLU solves at once. */
 enum { MIN_POINTS = 100, AT_ONCE = 4 };
-
-// ---- factors of a sparse matrix by KLU
-
-/* A square matrix in compressed columns, as in base/sparse.h. */
-struct sparse_columns {
-    int n;
-    unsigned version; /* of the pattern, not 0; a new version is analysed again */
-    int64_t *start;   /* (n + 1) */
-    int64_t *row;     /* (start[n]) */
-    double *value;    /* (start[n]) */
-};
-
-struct sparse_factors {
-    int n;
-    unsigned version; /* version of the analysed pattern; 0: none */
-    klu_l_common common;
-    klu_l_symbolic *symbolic;
-    klu_l_numeric *numeric;
-    bool lacks_memory;     /* KLU had no memory for the last set-up */
-    double rcond, rgrowth; /* when the pivots were chosen */
-    struct fish_factors_counts counts;
-};
-
-static void release_sparse_factors(void *object) {
-    struct sparse_factors *const factors = object;
-    klu_l_free_numeric(&factors->numeric, &factors->common);
-    klu_l_free_symbolic(&factors->symbolic, &factors->common);
-}
-
-static struct sparse_factors *sparse_factors_create(struct arena *arena) {
-    struct sparse_factors *factors;
-    NEW(arena, factors, 1);
-    klu_l_defaults(&factors->common);
-    arena_defer(arena, release_sparse_factors, factors);
-    return factors;
-}
-
-// choose pivots of at least this fraction (tolerance) of the largest entry; returns whether the matrix is regular
-static bool sparse_factor(struct sparse_factors *factors, const struct sparse_columns *matrix, double tolerance) {
-    klu_l_common *const common = &factors->common;
-    klu_l_free_numeric(&factors->numeric, common);
-    common->tol = tolerance;
-    factors->counts.factorisations++;
-    factors->numeric = klu_l_factor(matrix->start, matrix->row, matrix->value, factors->symbolic, common);
-    factors->lacks_memory = !factors->numeric && common->status == KLU_OUT_OF_MEMORY;
-    if (!factors->numeric) return false;
-    klu_l_rcond(factors->symbolic, factors->numeric, common);
-    factors->rcond = common->rcond;
-    klu_l_rgrowth(matrix->start, matrix->row, matrix->value, factors->symbolic, factors->numeric, common);
-    factors->rgrowth = common->rgrowth;
-    return true;
-}
-
-// returns whether the matrix is regular
-static bool sparse_factors_set_up(struct sparse_factors *factors, const struct sparse_columns *matrix) {
-    klu_l_common *const common = &factors->common;
-    if (factors->version != matrix->version) {
-        klu_l_free_numeric(&factors->numeric, common);
-        klu_l_free_symbolic(&factors->symbolic, common);
-        factors->counts.analyses++;
-        factors->symbolic = klu_l_analyze(matrix->n, matrix->start, matrix->row, common);
-        factors->lacks_memory = !factors->symbolic && common->status == KLU_OUT_OF_MEMORY;
-        if (factors->lacks_memory) return false;
-        factors->version = matrix->version;
-        factors->n = matrix->n;
-    }
-    // without an analysis the matrix is structurally singular
-    if (!factors->symbolic) return false;
-
-    // the pivots of the last factorisation, if the factors are good
-    if (factors->numeric) {
-        factors->counts.refactorisations++;
-        if (klu_l_refactor(matrix->start, matrix->row, matrix->value, factors->symbolic, factors->numeric, common) &&
-            klu_l_rcond(factors->symbolic, factors->numeric, common) && common->rcond >= min_quality * factors->rcond &&
-            klu_l_rgrowth(matrix->start, matrix->row, matrix->value, factors->symbolic, factors->numeric, common) &&
-            common->rgrowth >= min_quality * factors->rgrowth) {
-            return true;
-        }
-    }
-    if (!sparse_factor(factors, matrix, diagonal_tolerance)) return false;
-    return factors->rgrowth >= min_growth || sparse_factor(factors, matrix, 1);
-}
-
-// x: right-hand sides, one after the other (n_sides, n)
-static void sparse_factors_solve(struct sparse_factors *factors, int n_sides, double *x) {
-    klu_l_solve(factors->symbolic, factors->numeric, factors->n, n_sides, x, &factors->common);
-}
-
-// ---- the block of one fish
 
 struct fish_factors {
     struct arena *arena;
@@ -317,10 +221,10 @@ void fish_factors_set_up(struct fish_factors *factors) {
     factors->in_parts = status == STATUS_OK;
 
     // factorise the whole block; later values may be divided again, with new pivots
-    if (status == STATUS_RETRY && !(factors->may_divide && factors->a->lacks_memory)) {
+    if (status == STATUS_RETRY && !(factors->may_divide && sparse_factors_lack_memory(factors->a))) {
         const struct sparse_columns whole = {block->n, block->version, block->column_start, block->row_index,
                                              block->value};
-        if (factors->may_divide) klu_l_free_numeric(&factors->a->numeric, &factors->a->common);
+        if (factors->may_divide) sparse_factors_forget(factors->a);
         status = sparse_factors_set_up(factors->whole, &whole) ? STATUS_OK : STATUS_SOLVER;
     }
     factors->status = status == STATUS_SOLVER && factors->was_factorised ? STATUS_RETRY : status;
@@ -330,7 +234,7 @@ void fish_factors_set_up(struct fish_factors *factors) {
 enum status fish_factors_status(const struct fish_factors *factors) {
     const struct sparse_factors *const parts[] = {factors->whole, factors->a};
     for (int i = 0; i < 2; i++) {
-        if (parts[i] && parts[i]->lacks_memory) arena_lack(factors->arena, 0);
+        if (parts[i] && sparse_factors_lack_memory(parts[i])) arena_lack(factors->arena, 0);
     }
     return factors->status;
 }
@@ -359,21 +263,12 @@ void fish_factors_solve(struct fish_factors *factors, double *x) {
     for (int k = 0; k < n; k++) x[sheet_column(factors, k)] = sheet[k];
 }
 
-void fish_factors_count(const struct fish_factors *factors, struct fish_factors_counts *counts) {
-    const struct sparse_factors *const parts[] = {factors->whole, factors->a};
-    for (int i = 0; i < 2; i++) {
-        if (!parts[i]) continue;
-        counts->analyses += parts[i]->counts.analyses;
-        counts->factorisations += parts[i]->counts.factorisations;
-        counts->refactorisations += parts[i]->counts.refactorisations;
-    }
+void fish_factors_count(const struct fish_factors *factors, struct klu_counts *counts) {
+    sparse_factors_count(factors->whole, counts);
+    if (factors->a) sparse_factors_count(factors->a, counts);
 }
 
 long fish_factors_non_zeros(const struct fish_factors *factors) {
-    const struct sparse_factors *const sparse = factors->in_parts ? factors->a : factors->whole;
-    const klu_l_numeric *const numeric = sparse->numeric;
-    if (!factors->was_factorised || !numeric) return 0;
     const long full = factors->in_parts ? (long)factors->n_sheet * factors->n_sheet : 0;
-    // KLU counts the ones on the diagonal of L
-    return (long)numeric->lnz + (long)numeric->unz + (long)numeric->nzoff - (long)sparse->n + full;
+    return sparse_factors_non_zeros(factors->in_parts ? factors->a : factors->whole) + full;
 }

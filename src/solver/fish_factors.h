@@ -18,15 +18,9 @@
 #include "base/sparse.h"
 #include "base/status.h"
 #include "fish/fish.h"
+#include "solver/sparse_factors.h"
 
 struct fish_factors;
-
-/* Totals of KLU so far. */
-struct fish_factors_counts {
-    long analyses;         /* of sparsity patterns */
-    long factorisations;   /* with new pivots */
-    long refactorisations; /* with the pivots of the last factorisation */
-};
 
 /* Create factors without values. The fish and its block of the Jacobian must outlive the factors. */
 struct fish_factors *fish_factors_create(struct arena *arena, const struct fish *fish, const struct sparse *block);
@@ -45,7 +39,7 @@ enum status fish_factors_status(const struct fish_factors *factors);
 void fish_factors_solve(struct fish_factors *factors, double *x);
 
 /* Add the totals of KLU to counts. */
-void fish_factors_count(const struct fish_factors *factors, struct fish_factors_counts *counts);
+void fish_factors_count(const struct fish_factors *factors, struct klu_counts *counts);
 
 /* Stored entries of the factors of the last set-up: those of KLU, and the full matrix of the sheet; 0: no factors. */
 long fish_factors_non_zeros(const struct fish_factors *factors);

@@ -1,7 +1,8 @@
-/* linear.c: factors for the diagonal blocks, GMRES of SUNDIALS for the couplings. */
+/* linear.c: factors for the diagonal blocks and GMRES of SUNDIALS for the couplings, or factors of the whole matrix. */
 #include "solver/linear.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,11 +26,27 @@ struct block {
     double *update;
 };
 
+/* The Jacobian as one sparse matrix, which KLU factorises, and the updated columns of the circulations shed. With the
+ * changes C of these columns and their unit vectors E (Woodbury),
+ *
+ *     (J + C E^T)^-1 b = x - Z K^-1 E^T x,   J x = b,   J Z = C,   K = 1 + E^T Z     of order n_fish */
+struct whole {
+    struct sparse_factors *factors;
+    struct sparse_columns columns;
+    int64_t *next;                /* of each column: where the next entry goes                          (n_unknowns) */
+    unsigned couplings, *version; /* patterns of the couplings and of each block in columns             (n_fish) */
+    bool is_set_up, is_updated;   /* was set up at least once; has an update since the last set-up */
+    double *z;                    /* Z, column after column                                     (n_fish, n_unknowns) */
+    struct dense_factors k;       /* factors of K */
+    double *shed;                 /* E^T x, then K^-1 E^T x                                             (n_fish) */
+};
+
 struct linear {
     struct arena *arena;
     const struct jacobian *jacobian;
     struct linear_tolerance tolerance;
-    struct block *block;
+    struct whole *whole; /* NULL: by blocks */
+    struct block *block; /* by blocks                                                                   (n_fish) */
     long solves, iterations;
     /* GMRES, created for the first coupled system: solution, right-hand side, 1/(sqrt(n_unknowns) scale) */
     struct sundials_context context;
@@ -39,6 +56,20 @@ struct linear {
     enum status failure;      /* of the product */
     enum status *of_callback; /* of the solver of SUNDIALS: status of the last set-up or solution */
 };
+
+static struct whole *whole_create(struct arena *arena, const struct school *school) {
+    struct whole *whole;
+    NEW(arena, whole, 1);
+    whole->factors = sparse_factors_create(arena);
+    whole->columns.n = school->n_unknowns;
+    NEW(arena, whole->columns.start, school->n_unknowns + 1);
+    NEW(arena, whole->next, school->n_unknowns);
+    NEW(arena, whole->version, school->n_fish);
+    NEW(arena, whole->z, (size_t)school->n_fish * (size_t)school->n_unknowns);
+    NEW(arena, whole->shed, school->n_fish);
+    whole->k = dense_factors_create(arena, school->n_fish);
+    return whole;
+}
 
 struct linear *linear_create(struct arena *arena, const struct jacobian *jacobian, const double *scale,
                              struct linear_tolerance tolerance) {
@@ -50,6 +81,10 @@ struct linear *linear_create(struct arena *arena, const struct jacobian *jacobia
     linear->tolerance = tolerance;
     NEW(arena, linear->weight, school->n_unknowns);
     for (int i = 0; i < school->n_unknowns; i++) linear->weight[i] = 1 / (sqrt(school->n_unknowns) * scale[i]);
+    if (school->linear == LINEAR_KLU) {
+        linear->whole = whole_create(arena, school);
+        return linear;
+    }
     NEW(arena, linear->block, school->n_fish);
     for (int f = 0; f < school->n_fish; f++) {
         linear->block[f].factors = fish_factors_create(arena, &school->fish[f], jacobian->own[f]);
@@ -58,7 +93,91 @@ struct linear *linear_create(struct arena *arena, const struct jacobian *jacobia
     return linear;
 }
 
+// ---- the whole matrix
+
+/* Call put for each entry of the Jacobian, in ascending rows of a column, except zeros in masked rows of couplings. */
+static void whole_each(struct whole *whole, const struct jacobian *jacobian,
+                       void (*put)(struct whole *whole, int64_t column, int64_t row, double value)) {
+    const struct school *const school = jacobian->school;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct sparse *const own = jacobian->own[f];
+        for (int c = 0; c < own->n; c++) {
+            for (int64_t k = own->column_start[c]; k < own->column_start[c + 1]; k++) {
+                put(whole, own->first + c, own->first + own->row_index[k], own->value[k]);
+            }
+        }
+        for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
+            const struct coupling_block *const rows = &jacobian->coupling[i].rows;
+            const struct fish *const other = &school->fish[jacobian->coupling[i].other];
+            for (int c = 0; c < rows->n_columns; c++) {
+                const int column = flow_column(other, c);
+                for (int r = 0; r < rows->n_rows; r++) {
+                    const int row = school->fish[f].at.ax + r;
+                    if (!sparse_is_masked(own, row)) put(whole, column, row, rows->value[(long)c * rows->n_rows + r]);
+                }
+            }
+        }
+    }
+}
+
+static void whole_count_entry(struct whole *whole, int64_t column, int64_t row, double value) {
+    (void)row, (void)value;
+    whole->columns.start[column + 1]++;
+}
+
+static void whole_place_entry(struct whole *whole, int64_t column, int64_t row, double value) {
+    const int64_t at = whole->next[column]++;
+    whole->columns.row[at] = row;
+    whole->columns.value[at] = value;
+}
+
+static enum status whole_setup(struct linear *linear) {
+    const struct jacobian *const jacobian = linear->jacobian;
+    const struct school *const school = jacobian->school;
+    struct whole *const whole = linear->whole;
+    struct sparse_columns *const columns = &whole->columns;
+    whole->is_updated = false;
+
+    // count the entries of each column if a block or the couplings have another pattern
+    bool is_new = columns->version == 0 || whole->couplings != jacobian->pattern;
+    for (int f = 0; f < school->n_fish; f++) is_new |= whole->version[f] != jacobian->own[f]->version;
+    if (is_new) {
+        memset(columns->start, 0, ((size_t)columns->n + 1) * sizeof *columns->start);
+        whole_each(whole, jacobian, whole_count_entry);
+        for (int c = 0; c < columns->n; c++) columns->start[c + 1] += columns->start[c];
+        GROW(linear->arena, columns->row, columns->start[columns->n]);
+        GROW(linear->arena, columns->value, columns->start[columns->n]);
+        for (int f = 0; f < school->n_fish; f++) whole->version[f] = jacobian->own[f]->version;
+        whole->couplings = jacobian->pattern;
+        columns->version++;
+    }
+    memcpy(whole->next, columns->start, (size_t)columns->n * sizeof *whole->next);
+    whole_each(whole, jacobian, whole_place_entry);
+
+    const bool is_regular = sparse_factors_set_up(whole->factors, columns);
+    if (sparse_factors_lack_memory(whole->factors)) arena_lack(linear->arena, 0);
+    if (!is_regular) return status_fail(whole->is_set_up ? STATUS_RETRY : STATUS_SOLVER, "the Jacobian is singular");
+    whole->is_set_up = true;
+    return STATUS_OK;
+}
+
+static void whole_solve(const struct linear *linear, double *x) {
+    const struct school *const school = linear->jacobian->school;
+    struct whole *const whole = linear->whole;
+    sparse_factors_solve(whole->factors, 1, x);
+    if (!whole->is_updated) return;
+    for (int f = 0; f < school->n_fish; f++) whole->shed[f] = x[school->fish[f].at.circulation];
+    dense_factors_solve(&whole->k, whole->shed);
+    for (int f = 0; f < school->n_fish; f++) {
+        const double *const z = whole->z + (size_t)f * (size_t)school->n_unknowns;
+        for (int i = 0; i < school->n_unknowns; i++) x[i] -= whole->shed[f] * z[i];
+    }
+}
+
+// ---- by blocks
+
 enum status linear_setup(struct linear *linear) {
+    if (linear->whole) return whole_setup(linear);
     const struct jacobian *jacobian = linear->jacobian;
     const struct school *school = jacobian->school;
     const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_MATRICES);
@@ -111,25 +230,29 @@ static void for_each_fish(void (*of_fish)(const struct operation *of, int f), st
     }
 }
 
-static void update_shed(const struct operation *of, int f) {
-    const struct jacobian *const jacobian = of->linear->jacobian;
+// the change of the column of the shed circulation of fish f, in rows of its block; derivative: new ones (n_unknowns)
+static void find_change(const struct jacobian *jacobian, int f, const double *derivative, double *change) {
     const struct fish *fish = &jacobian->school->fish[f];
-    struct block *const block = &of->linear->block[f];
     const struct sparse *const own = jacobian->own[f];
-    double *const change = block->update;
-
-    // the change of the column of the shed circulation, in rows of the block
     const int column = fish->at.circulation - fish->at.x, end = fish->at.gamma + fish->n_control - fish->at.x;
     const int first = (fish_has_momentum(fish) ? fish->at.ax : fish->at.gamma) - fish->at.x;
     memset(change, 0, (size_t)own->n * sizeof *change);
     for (int i = first; i < end; i++) {
-        if (!sparse_is_masked(own, fish->at.x + i)) change[i] = of->from[fish->at.x + i];
+        if (!sparse_is_masked(own, fish->at.x + i)) change[i] = derivative[fish->at.x + i];
     }
     for (int64_t i = own->column_start[column]; i < own->column_start[column + 1]; i++) {
         const int64_t row = own->row_index[i];
         if (row >= first && row < end) change[row] -= own->value[i];
     }
+}
 
+static void update_shed(const struct operation *of, int f) {
+    const struct jacobian *const jacobian = of->linear->jacobian;
+    const struct sparse *const own = jacobian->own[f];
+    struct block *const block = &of->linear->block[f];
+    const int column = jacobian->school->fish[f].at.circulation - jacobian->school->fish[f].at.x;
+    double *const change = block->update;
+    find_change(jacobian, f, of->from, change);
     block->is_updated = 0;
     solve_block(of->linear, f, change);
     const double divisor = 1 + change[column];
@@ -137,7 +260,30 @@ static void update_shed(const struct operation *of, int f) {
     block->is_updated = 1;
 }
 
+static void whole_update_shed(struct linear *linear, const double *value) {
+    const struct school *const school = linear->jacobian->school;
+    struct whole *const whole = linear->whole;
+    const size_t n = (size_t)school->n_unknowns;
+    memset(whole->z, 0, (size_t)school->n_fish * n * sizeof *whole->z);
+    for (int f = 0; f < school->n_fish; f++) {
+        find_change(linear->jacobian, f, value, whole->z + (size_t)f * n + school->fish[f].at.x);
+    }
+    sparse_factors_solve(whole->factors, school->n_fish, whole->z);
+    for (int f = 0; f < school->n_fish; f++) {
+        for (int g = 0; g < school->n_fish; g++) {
+            const double by_g = whole->z[(size_t)g * n + (size_t)school->fish[f].at.circulation];
+            whole->k.value[f + (long)g * whole->k.stride] = (f == g) + by_g;
+        }
+    }
+    dense_factors_set_up(&whole->k);
+    whole->is_updated = true;
+}
+
 void linear_update_shed(struct linear *linear, const double *value) {
+    if (linear->whole) {
+        whole_update_shed(linear, value);
+        return;
+    }
     for_each_fish(update_shed, (struct operation){linear, value, NULL});
 }
 
@@ -207,10 +353,15 @@ enum status linear_solve(struct linear *linear, const double *b, double *x) {
     const struct jacobian *const jacobian = linear->jacobian;
     const int n = jacobian->school->n_unknowns;
     linear->solves++;
-    for_each_fish(uncoupled_solve, (struct operation){linear, b, x});
+    if (linear->whole) {
+        if (x != b) memcpy(x, b, (size_t)n * sizeof *x);
+        whole_solve(linear, x);
+    } else {
+        for_each_fish(uncoupled_solve, (struct operation){linear, b, x});
+    }
 
     // the coupled system; x is now the solution of the uncoupled system
-    if (jacobian->n_couplings > 0) {
+    if (!linear->whole && jacobian->n_couplings > 0) {
         if (!linear->gmres) gmres_create(linear);
         N_VSetArrayPointer(x, linear->x);
         const double start = N_VWL2Norm(linear->x, linear->weights);
@@ -238,6 +389,13 @@ enum status linear_solve(struct linear *linear, const double *b, double *x) {
 
 struct linear_counts linear_count(const struct linear *linear) {
     struct linear_counts counts = {.solves = linear->solves, .iterations = linear->iterations};
+    if (linear->whole) {
+        sparse_factors_count(linear->whole->factors, &counts.klu);
+        counts.factor_non_zeros = sparse_factors_non_zeros(linear->whole->factors);
+        if (counts.factor_non_zeros > 0)
+            counts.jacobian_non_zeros = (long)linear->whole->columns.start[linear->whole->columns.n];
+        return counts;
+    }
     for (int f = 0; f < linear->jacobian->school->n_fish; f++) {
         fish_factors_count(linear->block[f].factors, &counts.klu);
         counts.factor_non_zeros += fish_factors_non_zeros(linear->block[f].factors);

@@ -1,5 +1,6 @@
 /* linear.h: linear systems with the Jacobian of the school. The diagonal block of each fish is factorised
- * (fish_factors.h); GMRES, preconditioned with these factors, solves for fish that are coupled. doc/numerics.md,
+ * (fish_factors.h); GMRES, preconditioned with these factors, solves for fish that are coupled. With solver.linear: klu
+ * the blocks and the couplings become one sparse matrix instead, and KLU factorises all of it. doc/numerics.md,
  * section 6. Tested by tests/solver/test_linear.c.
  *
  *     linear_setup after each new Jacobian -> linear_solve, linear_update_shed, linear_solve, ... */
@@ -15,8 +16,8 @@ struct linear;
 
 /* Totals so far. */
 struct linear_counts {
-    struct fish_factors_counts klu; /* over all fish */
-    long solves, iterations;        /* iterations: of GMRES */
+    struct klu_counts klu;   /* over all fish */
+    long solves, iterations; /* iterations: of GMRES */
     /* at the last set-up, 0 before: entries of the Jacobian with its couplings, and of all factors */
     long jacobian_non_zeros, factor_non_zeros;
 };
@@ -32,14 +33,14 @@ struct linear_tolerance {
 struct linear *linear_create(struct arena *arena, const struct jacobian *jacobian, const double *scale,
                              struct linear_tolerance tolerance);
 
-/* Factorise the diagonal blocks with their present values. A singular block fails with STATUS_SOLVER at the first
- * factorisation, later with STATUS_RETRY. */
+/* Factorise the diagonal blocks, or the whole matrix, with their present values. A singular matrix fails with
+ * STATUS_SOLVER at the first factorisation, later with STATUS_RETRY. */
 enum status linear_setup(struct linear *linear);
 
 /* Replace derivatives by the shed circulation of the same fish until the next linear_setup: those of impermeability
  * and, with force: pressure, of the law of motion. value (n_unknowns): new derivatives, in the rows of these equations.
- * The factors are unchanged; a matrix of rank one per fish corrects the solutions (Sherman and Morrison). If that
- * matrix is singular, the solutions are not finite. Requires linear_setup. */
+ * The factors are unchanged; a matrix of rank one per fish corrects the solutions (Sherman and Morrison; of the whole
+ * matrix Woodbury). If that matrix is singular, the solutions are not finite. Requires linear_setup. */
 void linear_update_shed(struct linear *linear, const double *value);
 
 /* Solve J x = b. Both arrays are (n_unknowns) and may be identical. Fails with STATUS_RETRY if x is not finite. */

@@ -81,6 +81,13 @@ static void build(struct system *system, const char *text, double relative) {
     system->linear = linear_create(test_arena(), system->setup.jacobian, system->scale, tolerance);
 }
 
+// the same system as one sparse matrix
+static void use_klu(struct system *system) {
+    system->setup.school->linear = LINEAR_KLU;
+    system->linear =
+        linear_create(test_arena(), system->setup.jacobian, system->scale, (struct linear_tolerance){.relative = 0});
+}
+
 // without the blocks between the fish
 static void uncouple(struct system *system) {
     const unsigned char none[49] = {0};  // 7 fish at most
@@ -165,6 +172,60 @@ TEST(coupled_fish_are_solved_to_the_tolerance) {
         ABOVE(counts.iterations, before);
         BELOW(counts.iterations, 40);
         before = counts.iterations;
+    }
+}
+
+TEST(klu_solves_the_whole_system_with_all_couplings) {
+    const char *const texts[] = {SCHOOL, SHEETS};
+    for (int i = 0; i < 2; i++) {
+        struct system system;
+        build(&system, texts[i], 1e-6);
+        AT_LEAST(system.setup.jacobian->n_couplings, i == 0 ? 20 : 2);
+        use_klu(&system);
+        school_ok(linear_setup(system.linear));
+        school_ok(linear_solve(system.linear, system.b, system.x));
+        BELOW(error_of(&system), 1e-9);
+        // every entry of the full matrix but the zeros in masked rows of couplings
+        struct linear_counts counts = linear_count(system.linear);
+        ARENA(arena, NULL, "a dense matrix");
+        const double *const full = school_dense_jacobian(arena, system.setup.jacobian);
+        long n_non_zeros = 0;
+        for (int k = 0; k < system.n * system.n; k++) n_non_zeros += fabs(full[k]) > 0;
+        AT_LEAST(counts.jacobian_non_zeros, n_non_zeros);
+        AT_MOST(counts.jacobian_non_zeros, jacobian_non_zeros(system.setup.jacobian));
+        assert_int_equal(counts.iterations, 0);
+
+        // other values keep the analysis and the pivots; other couplings do not
+        jacobian_at(&system, 500);
+        school_ok(linear_setup(system.linear));
+        school_ok(linear_solve(system.linear, system.b, system.x));
+        BELOW(error_of(&system), 1e-9);
+        counts = linear_count(system.linear);
+        assert_int_equal(counts.klu.analyses, 1);
+        assert_int_equal(counts.klu.factorisations, 1);
+        assert_int_equal(counts.klu.refactorisations, 1);
+        system.setup.residual->couplings.pattern++;
+        uncouple(&system);
+        school_ok(linear_setup(system.linear));
+        school_ok(linear_solve(system.linear, system.b, system.x));
+        BELOW(error_of(&system), 1e-9);
+        assert_int_equal(linear_count(system.linear).klu.analyses, 2);
+    }
+}
+
+TEST(a_whole_matrix_that_is_singular_is_final_at_first_and_a_retry_later) {
+    struct system system;
+    build(&system, SCHOOL, 1e-6);
+    use_klu(&system);
+    const enum status want[] = {STATUS_SOLVER, STATUS_OK, STATUS_RETRY, STATUS_OK};
+    for (int i = 0; i < 4; i++) {
+        jacobian_at(&system, 370);
+        struct sparse *const own = system.setup.jacobian->own[4];
+        if (i % 2 == 0) {
+            // the column of the last unknown, phi0, becomes zero
+            for (int64_t k = own->column_start[own->n - 1]; k < own->column_start[own->n]; k++) own->value[k] = 0;
+        }
+        assert_int_equal(linear_setup(system.linear), want[i]);
     }
 }
 
@@ -310,12 +371,14 @@ TEST(the_column_of_the_circulation_shed_can_be_updated) {
         "  - {start: {position: [0.2, 0.35]}, length: 0.7}\n"
         "  - {start: {position: [0.1, -0.4]}, motion: {prescribed: head, heave: 0.1, frequency: 1}}\n"
         "  - {start: {position: [1.35, 0]}, force: reactive}\n"};
-    for (int variant = 0; variant < 6; variant++) {
-        const int coupled = variant % 2;
+    // uncoupled, coupled, and coupled in one matrix
+    for (int variant = 0; variant < 9; variant++) {
+        const int coupled = variant % 3;
         struct system system;
-        build(&system, texts[variant / 2], 1e-13);
+        build(&system, texts[variant / 3], 1e-13);
         struct setup *const setup = &system.setup;
         if (!coupled) uncouple(&system);
+        if (coupled == 2) use_klu(&system);
         school_ok(linear_setup(system.linear));
         school_ok(linear_solve(system.linear, system.b, system.x));
         BELOW(error_of(&system), 1e-9);
@@ -335,7 +398,7 @@ TEST(the_column_of_the_circulation_shed_can_be_updated) {
         BELOW(error_of(&system), 1e-9);
         jacobian_at(&system, 370);
         // sums over many points are rounded in two ways, and friction depends on them
-        AT_MOST(replace(&system, by_shed), (variant / 2 == 1 ? 0 : 4 * DBL_EPSILON));
+        AT_MOST(replace(&system, by_shed), (variant / 3 == 1 ? 0 : 4 * DBL_EPSILON));
         // factors of a new matrix have no update
         school_ok(linear_setup(system.linear));
         school_ok(linear_solve(system.linear, system.b, system.x));
