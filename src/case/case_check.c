@@ -492,8 +492,13 @@ static void check_pressure(const struct check *check) {
     complain_if(fish->nodes > 0 && fish->sheet_points < 2 * fish->nodes - 1, check, of_points,
                 "with 'force: pressure' the added mass of %d nodes needs at least %d points, not %d", fish->nodes,
                 2 * fish->nodes - 1, fish->sheet_points);
-    complain_if(is_given(check, "fish.added_mass.coefficient"), check, "fish.added_mass.coefficient",
-                "has no effect with 'force: pressure': remove the key");
+    static const char extent[] = "fish.added_mass.extent",
+                      no_effect[] = "has no effect with 'force: pressure': remove the key";
+    complain_if(is_given(check, "fish.added_mass.coefficient"), check, "fish.added_mass.coefficient", no_effect);
+    // under defaults the key may serve fish with another force
+    bool is_default = true;
+    const bool is_written = case_merge_value(check->tree, extent, check->index, &is_default) != NULL && !is_default;
+    complain_if(fish->added_mass.extent == EXTENT_THICKNESS && is_written, check, extent, no_effect);
     complain_if(fish->sensors.n > 0 && (fabs(fluid->shear) > 0 || fluid->gust_profile != GUST_UNIFORM), check,
                 "fish.sensors",
                 "the pressure on a side needs a stream with a potential: remove fluid.shear and fluid.gust.profile");

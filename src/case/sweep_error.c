@@ -30,6 +30,7 @@ const struct sweep_error_key sweep_error_keys[SWEEP_N_ERROR_KEYS] = {
     {"fish.drag.transition", NULL, SWEEP_MODEL, .n_levels = 2, .level = {0, 1e8}, OF_LAYER},
     {"fish.drag.normal", NULL, SWEEP_MODEL, .n_levels = 2, .level = {0, 2}},
     {"fish.body.relaxation_time", NULL, SWEEP_MODEL, {4, 0}, 0.25, .order = 1},
+    {"fish.body.tail_thickness", NULL, SWEEP_MODEL, {2, 0}, 0.5, .order = 1},
 };
 
 const struct sweep_error_key *sweep_error_find(const char *path) {

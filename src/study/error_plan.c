@@ -339,6 +339,7 @@ static bool is_used(const struct error_study *study, const struct sweep_error_ke
     // the key of a choice may need another choice; a factor of 1 is off, and only a moving body has damping
     if (row->switch_path && (int)plan_number_of(values, row->switch_path, 0) != row->switch_value) return false;
     if (strcmp(row->path, "fish.drag.waving") == 0 && !(value > 1)) return false;
+    if (strcmp(row->path, "fish.body.tail_thickness") == 0) return value > 0;
     if (study->is_static && strncmp(row->path, "fish.pressure.", 14) == 0) return true;
     if (strcmp(row->path, "fish.body.relaxation_time") == 0) {
         return value > 0 && !study->is_static && values->school.fish[0].motion.prescribed != PRESCRIBED_ALL;

@@ -156,7 +156,7 @@ static const struct variant {
                   "fish:\n"
                   "  - {nodes: 5, sheet_points: 21, force: pressure, pressure: {span: finite}, drag: {normal: 1}}\n"
                   "  - {nodes: 4, sheet_points: 11, force: pressure, pressure: {span: finite}, body: {depth: 0.6},\n"
-                  "     drag: {normal: 2, law: linear_quadratic}, added_mass: {extent: thickness},\n"
+                  "     drag: {normal: 2, law: linear_quadratic},\n"
                   "     start: {position: [0.2, 0.5], heading: 170}}\n"},
     {"four fish of finite span, one force each, two depths", PRESSURE FAR
      "fluid: {velocity: [0.1, 0.05], shear: 0.2}\nfish:\n"
