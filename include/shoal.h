@@ -36,7 +36,7 @@ enum shoal_status {
     SHOAL_FILE = -2,   /* a file cannot be read or written */
     SHOAL_MEMORY = -3, /* out of memory */
     SHOAL_SOLVER = -4, /* the integration failed, or a contact of bodies with contact.action: stop */
-    SHOAL_STOPPED = -5 /* the set-up was stopped: shoal_listen */
+    SHOAL_STOPPED = -5 /* the call was stopped: shoal_listen */
 };
 
 /* ---- the life of a run ---- */
@@ -49,9 +49,11 @@ int shoal_open(struct shoal **run, const char *case_path, int n_assignments, con
 int shoal_open_text(struct shoal **run, const char *text, const char *folder, int n_assignments,
                     const char *const *assignments);
 
-/* Stop the set-up of later calls of shoal_open, shoal_open_text, shoal_load and shoal_clone in this thread once *stop
- * is not 0: these calls then return SHOAL_STOPPED within a second. Another thread or a signal handler sets *stop, which
- * must outlive the calls. NULL: no stop. */
+/* Stop later calls of shoal_open, shoal_open_text, shoal_load, shoal_clone, shoal_step and shoal_advance in this thread
+ * once *stop is not 0: these calls then return SHOAL_STOPPED within a second. After shoal_step and shoal_advance the
+ * run is at the last event that it has reached and can continue; the integrator restarts there, as after shoal_clone. A
+ * run that shoal_clone could not copy is unchanged. Another thread or a signal handler sets *stop, which must outlive
+ * the calls. NULL: no stop. */
 void shoal_listen(const volatile int *stop);
 
 /* Release a run; close an open result file. Accepts NULL. */

@@ -1,5 +1,8 @@
 """The library libshoal through ctypes: loading, errors, and the checks of every argument before ctypes sees it."""
 
+from __future__ import annotations
+
+import contextlib
 import ctypes
 import difflib
 import math
@@ -130,32 +133,80 @@ def check(code: int) -> int:
     return code
 
 
+class _Worker:
+    """A thread for calls of the main thread that can take long. Python handles signals in the main thread, between two
+    lines, so the call runs in this thread, which listens to a flag, while the main thread waits."""
+
+    def __init__(self):
+        self.stop = ctypes.c_int(0)
+        self.begin, self.done = threading.Lock(), threading.Lock()
+        self.begin.acquire()
+        self.done.acquire()
+        self.function, self.arguments = None, ()  # () between two calls
+        threading.Thread(target=self._serve, name="shoal", daemon=True).start()
+
+    def _serve(self):
+        library.shoal_listen(self.stop)
+        while True:
+            self.begin.acquire()
+            self.code = self.function(*self.arguments)
+            self.message = message() if self.code < 0 else ""
+            self.arguments = ()
+            with contextlib.suppress(RuntimeError):  # already released, because a signal came while the main thread waited
+                self.done.release()
+
+    def wait(self, raised):
+        """After an exception of a signal handler: stop a call that does not end within half a second."""
+        patience = 0.5
+        while self.arguments:
+            try:
+                self.stop.value = not self.done.acquire(timeout=patience)
+                patience = -1
+            except BaseException as error:
+                raised = error
+        self.stop.value = 0
+        raise raised
+
+
+worker: _Worker | None = None
+_main = threading.main_thread().ident
+
+
+def forget_worker():
+    """In the child of a fork there is one thread, and no worker."""
+    global worker, _main
+    worker, _main = None, threading.get_ident()
+
+
+def call(function, *arguments) -> int:
+    """Call a function that can take long and raise the exception of a negative status. Ctrl-C stops the call, also during
+    a long event; a run is then at the last event and can continue."""
+    global worker
+    if threading.get_ident() != _main or worker is not None and worker.arguments:
+        return check(function(*arguments))
+    if worker is None:
+        worker = _Worker()
+    try:
+        worker.function, worker.arguments = function, arguments
+        worker.begin.release()
+        worker.done.acquire()
+    except BaseException as error:
+        worker.wait(error)
+    while worker.arguments:  # an earlier release, which a signal has left
+        worker.done.acquire()
+    if worker.code < 0:
+        raise ERRORS.get(worker.code, Error)(worker.message)
+    return worker.code
+
+
 def open_run(function, *arguments) -> ctypes.c_void_p:
-    """The run that a function of the library opens. Ctrl-C stops the set-up: Python handles signals in the main thread,
-    between two lines, so the set-up runs in another thread and looks at a flag."""
-    pointer, stop, failure, is_done = ctypes.c_void_p(), ctypes.c_int(0), [], threading.Event()
-
-    def open_it():
-        library.shoal_listen(stop)
-        code = function(pointer, *arguments)
-        library.shoal_listen(None)
-        if code < 0:
-            failure.append(ERRORS.get(code, Error)(message()))
-        is_done.set()
-
-    if threading.current_thread() is threading.main_thread():
-        threading.Thread(target=open_it).start()
-        try:
-            is_done.wait()
-        except BaseException:
-            stop.value = 1
-            is_done.wait()
-            library.shoal_close(pointer)
-            raise
-    else:
-        open_it()
-    if failure:
-        raise failure[0]
+    """The run that a function of the library opens."""
+    pointer = ctypes.c_void_p()
+    try:
+        call(function, pointer, *arguments)
+    except BaseException:
+        library.shoal_close(pointer)
+        raise
     return pointer
 
 
@@ -214,15 +265,17 @@ def number_of(value, what: str) -> float:
     return number
 
 
-def numbers_of(value, what: str) -> np.ndarray:
-    """Numbers for the library, in C order."""
+def numbers_of(value, what: str, most: int = 2**28) -> np.ndarray:
+    """At most as many numbers for the library, in C order; more are refused before they are copied."""
     try:
         array = np.asarray(value)
-        if array.dtype.kind not in "fiub":
-            raise TypeError(f"{what}: numbers, not {kind(value)}")
-        return np.ascontiguousarray(array, dtype=float)
     except ValueError as error:  # lists of different lengths
         raise CaseError(f"{what}: {error}") from error
+    if array.dtype.kind not in "fiub":
+        raise TypeError(f"{what}: numbers, not {kind(value)}")
+    if array.size > most:
+        raise CaseError(f"{what}: {array.size} numbers are too many")
+    return np.ascontiguousarray(array, dtype=float)
 
 
 def index_of(value, names: list, what: str) -> int:

@@ -86,9 +86,10 @@ def _begin_child():
     """After a fork: the other threads and their locks are gone. A run in a step of another thread is torn: the memory is
     between two events."""
     for handle in list(_handles):
-        if not handle.lock.acquire(blocking=False):
+        if not handle.lock.acquire(blocking=False) or lib.worker is not None and handle.pointer in lib.worker.arguments:
             handle.is_torn = True
         handle.lock = threading.RLock()
+    lib.forget_worker()
 
 
 os.register_at_fork(after_in_child=_begin_child)
@@ -138,10 +139,10 @@ class _Using:
         self.run = run
 
     def __enter__(self):
-        self.lock = self.run._open().lock
+        self.lock = (self.run._handle or self.run._open()).lock
         self.lock.acquire()
         try:
-            return self.run._open().pointer  # the run may have been closed meanwhile
+            return self.run._locked()
         except BaseException:
             self.lock.release()
             raise
@@ -190,6 +191,13 @@ class Run:
                               "fork while no thread is in it")
         return handle
 
+    def _locked(self) -> int:
+        """The pointer, with the lock of the run."""
+        pointer = self._open().pointer  # the run may have been closed meanwhile
+        if lib.worker is not None and pointer in lib.worker.arguments:
+            raise SolverError("a signal handler cannot use a run between two of its events: set a flag there instead")
+        return pointer
+
     def __enter__(self) -> Run:
         return self
 
@@ -214,10 +222,8 @@ class Run:
 
     def clone(self) -> Run:
         """A copy at the last event, without the result file. Run and copy continue with the same bits, each by itself."""
-        pointer = ctypes.c_void_p()
         with self._using() as own:
-            check(lib.library.shoal_clone(pointer, own))
-        return self._adopt(pointer.value)
+            return self._adopt(lib.open_run(lib.library.shoal_clone, own).value)
 
     @classmethod
     def _adopt(cls, pointer):
@@ -236,8 +242,8 @@ class Run:
         if not isinstance(other, Run):
             raise TypeError(f"restore: a Run, not {kind(other)}")
         first, second = sorted((self._open(), other._open()), key=id)
-        with first.lock, second.lock:
-            check(lib.library.shoal_restore(self._open().pointer, other._open().pointer))
+        with first.lock, second.lock, self._using() as own, other._using() as its:
+            check(lib.library.shoal_restore(own, its))
 
     def save(self, path: str | os.PathLike):
         """Write a checkpoint with the case and the state at the last event, from which shoal.load continues with the
@@ -285,26 +291,21 @@ class Run:
 
     def step(self, n: int = 1):
         """Advance by n events, each one shedding interval later."""
-        handle = self._open()
         if n != 1:
             n = int(number_of(n, "step: a number of events"))
             if n < 0:
                 raise CaseError(f"step: {n} events: the number cannot be negative")
-        with handle.lock:
-            pointer = self._open().pointer
-            code = lib.library.shoal_step(pointer) if n == 1 else 0
-            for _ in range(n if n != 1 else 0):
-                code = lib.library.shoal_step(pointer)
-                if code:
-                    break
-            if code:
-                check(code)
+        with (self._handle or self._open()).lock:
+            pointer = self._locked()
+            for _ in range(n):
+                lib.call(lib.library.shoal_step, pointer)
 
     def advance(self, time: float, progress: Callable[[float, float], None] | bool | None = False):
         """Advance to the first event at or after a time, s, which must not be before the last event.
 
         progress: a function of (time, time to reach), called several times a second; True: a bar on standard error or
-        in a notebook; None: a bar on a terminal or in a notebook. Ctrl-C stops at the next event; the run can continue.
+        in a notebook; None: a bar on a terminal or in a notebook. Ctrl-C stops at the next event, or during a long event
+        at the last one; the run can continue.
         """
         target = number_of(time, "advance: a time, s,")
         with report(progress) as show, self._using() as pointer:
@@ -314,9 +315,9 @@ class Run:
             # event by event: Python looks for signals between two calls
             while (now := lib.library.shoal_time(pointer)) + interval < target <= end * (1 + 1e-9):
                 show(now - first, target - first, now, target)
-                check(lib.library.shoal_advance(pointer, now + interval))
+                lib.call(lib.library.shoal_advance, pointer, now + interval)
 
-            check(lib.library.shoal_advance(pointer, target))
+            lib.call(lib.library.shoal_advance, pointer, target)
             show(1, 1, lib.library.shoal_time(pointer), target, is_due=True)
 
     # -- from outside
@@ -328,9 +329,7 @@ class Run:
         number = index_of(fish, self.names, "set")
         if not isinstance(key, str):
             raise TypeError(f"set: a key is one of {', '.join(KEYS)}, not {kind(key)}")
-        values = numbers_of(value, f"set: {key}")
-        if values.size > 2**20:
-            raise CaseError(f"set: {key}: {values.size} numbers are too many")
+        values = numbers_of(value, f"set: {key}", 2**20)
         pointer = values.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
         with self._using() as run:
             check(lib.library.shoal_set(run, number, text_of(key, "set: a key"), values.size, pointer))
@@ -437,7 +436,7 @@ class Run:
         valid after the run is closed. After a step call view() again."""
         if not isinstance(name, str):
             _refuse_name(name)
-        with self._using() as pointer:
+        with _Using(self) as pointer:
             return self._view(name, pointer)
 
     def flow(self, points) -> tuple[np.ndarray, np.ndarray]:
@@ -445,10 +444,8 @@ class Run:
         points = numbers_of(points, "flow: points")
         if points.ndim == 0 or points.shape[-1] != 2:
             raise CaseError(f"flow: points have the shape (..., 2), not {points.shape}")
-        velocity, vorticity = np.empty(points.shape), np.empty(points.shape[:-1])
-        if vorticity.size > 2**27:
-            raise CaseError(f"flow: {vorticity.size} points are too many")
         with self._using() as pointer:
+            velocity, vorticity = np.empty(points.shape), np.empty(points.shape[:-1])
             check(lib.library.shoal_flow(pointer, vorticity.size, points.ctypes.data, velocity.ctypes.data,
                                          vorticity.ctypes.data))
         return velocity, vorticity

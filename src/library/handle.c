@@ -23,8 +23,11 @@ static void unlock_netcdf(void) {
     pthread_mutex_unlock(&netcdf_lock);
 }
 
+static bool is_child;
+
 static void begin_child(void) {
     unlock_netcdf();
+    is_child = true;
     omp_set_max_active_levels(0);
 }
 
@@ -38,6 +41,9 @@ static pthread_once_t forks_once = PTHREAD_ONCE_INIT;
 
 enum status handle_call(struct shoal *run, handle_part *part, const void *data) {
     MEMORY_BOUNDARY(STATUS_MEMORY);
+
+    // the limit belongs to a thread, and the child may have new ones
+    if (is_child) omp_set_max_active_levels(0);
     return part(run, data);
 }
 

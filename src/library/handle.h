@@ -34,6 +34,7 @@ struct shoal {
     struct arena *arena; /* of this struct, the simulation and the buffers */
     struct shared *shared;
     struct simulation *simulation;
+    struct state *before;                  /* state at the last event, during a step that can be stopped; or NULL */
     bool is_renewed;                       /* the integrator has restarted at this event */
     struct integrator_counts when_reached; /* if is_renewed: the counts before the restart */
     bool has_failed;

@@ -13,6 +13,7 @@
 #include "result/target.h"
 #include "run/record.h"
 #include "solver/initial_conditions.h"
+#include "state/state.h"
 
 _Static_assert((int)SHOAL_USAGE == STATUS_CASE && (int)SHOAL_FILE == STATUS_FILE &&
                    (int)SHOAL_MEMORY == STATUS_MEMORY && (int)SHOAL_SOLVER == STATUS_SOLVER,
@@ -140,19 +141,42 @@ static enum status write_checkpoint(struct shoal *run) {
 
 // ---- steps
 
+/* Step to the next event; with a flag that can stop the step, the state at this event is kept. */
 static enum status step_simulation(struct shoal *run, const void *data) {
     (void)data;
-    return simulate_step(run->simulation);
+    struct simulation *const simulation = run->simulation;
+    simulation->stop = handle_stop;
+    if (handle_stop) {
+        if (!run->before) run->before = state_create(run->arena, simulation->school);
+        state_table_copy(run->before, simulation->state, simulation->school, false);
+    }
+
+    // the flag may not outlive this call
+    const enum status status = simulate_step(simulation);
+    simulation->stop = simulation->residual->stop = NULL;
+    return status;
+}
+
+/* Return to the last event after a stop in between. */
+static enum status return_to_event(struct shoal *run) {
+    struct simulation *const simulation = run->simulation;
+    state_table_copy(simulation->state, run->before, simulation->school, false);
+    TRY(handle_renew(run));
+    run->when_reached = simulation->totals;
+    return status_fail(STATUS_STOPPED, "shoal_step: stopped: the run is at the last event, t = %.10g s",
+                       simulation->state->t);
 }
 
 int shoal_step(struct shoal *run) {
     TRY(handle_check_alive(run, __func__));
+    TRY(status_ask(handle_stop));
     if (run->simulation->state->event >= run->simulation->n_events) {
         return status_fail(STATUS_CASE, "%s: the run is at its end, t = %g s: increase time.end", __func__,
                            run->simulation->state->t);
     }
     handle_forget_row(run);
     enum status status = handle_call(run, step_simulation, NULL);
+    if (status == STATUS_STOPPED) return return_to_event(run);
     if (status != STATUS_OK) {
         handle_fail(run);
         return status == STATUS_CONTACT ? STATUS_SOLVER : status;

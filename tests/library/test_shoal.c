@@ -1,10 +1,12 @@
 /* test_shoal.c: every function of shoal.h, with the same bits as the internal simulation. */
 #include <limits.h>
 #include <pthread.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -110,6 +112,62 @@ TEST(a_step_goes_to_the_next_event_and_releases_a_vortex_of_each_fish) {
         assert_int_equal(shoal_n_vortices(run, 1), n_steps);
     }
     assert_int_equal(n_steps, 5);
+}
+
+// ---- stops
+
+static volatile int stop;
+
+static void set_stop(int number) {
+    (void)number;
+    stop = 1;
+}
+
+/* Set stop after this time, once. */
+static void stop_after(int milliseconds) {
+    stop = 0;
+    signal(SIGALRM, set_stop);
+    const struct itimerval once = {.it_value = {0, 1000 * milliseconds}};
+    assert_int_equal(setitimer(ITIMER_REAL, &once, NULL), 0);
+}
+
+TEST(a_stopped_step_returns_to_the_last_event_and_the_run_continues) {
+    // 100,000 steps for an event: seconds to minutes
+    const char *const assignments[] = {"solver.method=rk4", "solver.step=2e-7", "solver.max_steps=1000000"};
+    struct shoal *const run = opened(*state, 3, assignments);
+    stop_after(30);
+    shoal_listen(&stop);
+    assert_int_equal(shoal_step(run), SHOAL_STOPPED);
+    assert_non_null(strstr(shoal_message(), "shoal_step: stopped: the run is at the last event, t = 0 s"));
+    stop_after(30);
+    assert_int_equal(shoal_advance(run, shoal_end(run)), SHOAL_STOPPED);
+    NEAR(shoal_time(run), 0, 0, 0);
+
+    // a flag that is set already leaves the run as it is
+    assert_int_equal(shoal_step(run), SHOAL_STOPPED);
+    shoal_listen(NULL);
+
+    // the same run with fewer steps
+    struct shoal *const other = opened(*state, 2, (const char *[]){"solver.method=rk4", "solver.step=2e-5"});
+    struct shoal *const copy = copy_of(other);
+    stop_after(5);
+    shoal_listen(&stop);
+    const int status = shoal_step(other);
+    shoal_listen(NULL);
+    assert_int_equal(status, SHOAL_STOPPED);
+    struct shoal_array time, again, steps;
+    assert_int_equal(shoal_read(other, "time", &time), SHOAL_OK);
+    assert_int_equal(shoal_read(other, "steps", &steps), SHOAL_OK);
+    NEAR(*(const double *)time.values, 0, 0, 0);
+    assert_int_equal(*(const long *)steps.values, 0);
+    for (int i = 0; i < 2; i++) assert_int_equal(shoal_step(other), SHOAL_OK);
+    for (int i = 0; i < 2; i++) assert_int_equal(shoal_step(copy), SHOAL_OK);
+    assert_int_equal(shoal_read(other, "x", &time), SHOAL_OK);
+    assert_int_equal(shoal_read(copy, "x", &again), SHOAL_OK);
+    assert_memory_equal(time.values, again.values, 2 * 7 * 2 * sizeof(double));
+    assert_int_equal(shoal_read(copy, "steps", &again), SHOAL_OK);
+    assert_int_equal(shoal_read(other, "steps", &steps), SHOAL_OK);
+    assert_int_equal(*(const long *)steps.values, *(const long *)again.values);
 }
 
 TEST(bodies_and_wakes_are_those_of_the_simulation) {
