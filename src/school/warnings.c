@@ -252,7 +252,10 @@ void warnings_divergence(const struct school *school, const struct state *state,
         // the circulation of a marker is the circulation shed until the birth
         double speed = 0, circulation = fabs(state->y[fish->at.circulation]);
         for (int k = 0; k < fish->n_nodes; k++) speed = larger(speed, hypot(vx[k], vy[k]));
-        for (int i = 0; i < wake->n_vortex; i++) circulation = larger(circulation, fabs(wake->circulation[i]));
+        for (int i = 0; i < wake->n_vortex; i++) {
+            speed = larger(speed, hypot(wake->u[i], wake->v[i]));
+            circulation = larger(circulation, fabs(wake->circulation[i]));
+        }
 
         // a value that is not finite is above every limit; a body at rest without a beat has no limit
         const double most = larger(speed, circulation / fish->length);
@@ -271,8 +274,8 @@ const struct warning_words warnings_words[N_WARNINGS] = {
     [WARNING_CROSSING] = {"a body crosses itself",
                           "centre line or outline, at an event; contact forces do not act within a body"},
     [WARNING_DIVERGENCE] = {"a fish has diverged",
-                            "at an event a node speed, or the circulation of the wake over the length, is above "
-                            "100 times the speeds of the case"},
+                            "at an event the speed of a node or of a vortex, or the circulation of the wake over the "
+                            "length, is above 100 times the speeds of the case"},
     [WARNING_ENERGY] =
         {"the energy balance is open",
          "energy_balance is more than 1 % of the largest work of muscle, fluid, damping, prescribed motion and all "
@@ -280,7 +283,8 @@ const struct warning_words warnings_words[N_WARNINGS] = {
     [WARNING_MOMENTUM] =
         {"the momentum balance is open",
          "momentum_balance is more than 1 % of the largest sum over all fish of: momentum, change of the impulse of "
-         "the vortices, external_impulse; not in the first beat, or, without beat, in the first length"},
+         "the vortices, external_impulse; in the first beat, or, without beat, in the first length, more than 20 % of "
+         "this sum or of the momentum at one length per beat"},
     [WARNING_BEATS] = {"few beats", "the run is shorter than two beats: means and powers are not those of a cycle"},
     [WARNING_DRIFT] = {"the speed changes", "drift is more than 1 %: means over the last beat are not steady"},
     [WARNING_EVENTS] = {"few events", "fewer than 20 in a beat"},
@@ -310,7 +314,7 @@ static bool school_warning(enum warning warning, const struct school *school, co
     const struct closest *const closest = state->closest;
     const bool repel = school->contact == CONTACT_REPEL;
     const double *const residual = diagnostics->momentum_balance, balance = hypot(residual[0], residual[1]);
-    double worst[N_DIVERGENCE], period = 0;
+    double worst[N_DIVERGENCE], period = 0, usual = 0, limit = 0.01 * diagnostics->momentum_size;
     long diverged = state->diverged;
 
     switch (warning) {
@@ -340,22 +344,26 @@ static bool school_warning(enum warning warning, const struct school *school, co
             memcpy(worst, state->divergence, sizeof worst);
             warnings_divergence(school, state, worst, &diverged);
             if (!(worst[DIVERGENCE_SIZE] > 1)) return false;
-            snprintf(line, WARNING_BYTES,
-                     "%.40s has diverged: at t = %.4g s node speed %.2g m/s, circulation %.2g m2/s, more than %g times "
-                     "the speeds of the case: reduce solver.rtol, solver.step or time.shedding_interval, or stiffen "
-                     "the body",
-                     school->fish[diverged].name, worst[DIVERGENCE_T], worst[DIVERGENCE_SPEED],
-                     worst[DIVERGENCE_CIRCULATION], most_of_case);
+            snprintf(
+                line, WARNING_BYTES,
+                "%.40s has diverged: at t = %.4g s a node or vortex has %.2g m/s, circulation %.2g m2/s, over %g times "
+                "the speeds of the case: reduce solver.rtol, solver.step or time.shedding_interval, or stiffen "
+                "the body",
+                school->fish[diverged].name, worst[DIVERGENCE_T], worst[DIVERGENCE_SPEED],
+                worst[DIVERGENCE_CIRCULATION], most_of_case);
             return true;
 
         case WARNING_MOMENTUM:
-            // not in the longest beat; without beat, not in the time of one length
-            for (int f = 0; f < school->n_fish; f++) period = fmax(period, 1 / fish_rate(school, &school->fish[f]));
-            if (state->t < period) return false;
-            if (isfinite(balance) ? !(balance > 0.01 * diagnostics->momentum_size)
-                                  : !diagnostics_momentum_is_defined(school)) {
-                return false;
+            // in the longest beat, or, without beat, in the time of one length, all terms are small, and a start with a
+            // jump leaves up to 0.12: include the momentum of all bodies at one length per beat
+            for (int f = 0; f < school->n_fish; f++) {
+                const struct fish *const fish = &school->fish[f];
+                const double rate = fish_rate(school, fish);
+                period = fmax(period, 1 / rate);
+                usual += fish->total_mass * fish->length * rate;
             }
+            if (state->t < period) limit = 0.2 * fmax(usual, diagnostics->momentum_size);
+            if (isfinite(balance) ? !(balance > limit) : !diagnostics_momentum_is_defined(school)) return false;
             snprintf(line, WARNING_BYTES,
                      "momentum balance: residual %.2g N s for %.2g N s: reduce time.shedding_interval, increase "
                      "sheet_points, or start without a jump of the velocity",

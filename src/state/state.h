@@ -70,7 +70,7 @@ struct closest {
 };
 
 /* Values of the worst divergence: size over the limit of the warning (school/warnings.h), 0: none; time, s; speed of a
- * node, m s-1; circulation shed, or of a vortex, m2 s-1. */
+ * node or of a vortex, m s-1; circulation shed, or of a vortex, m2 s-1. */
 enum divergence { DIVERGENCE_SIZE, DIVERGENCE_T, DIVERGENCE_SPEED, DIVERGENCE_CIRCULATION, N_DIVERGENCE };
 
 enum { STATE_PAST = 4 };
