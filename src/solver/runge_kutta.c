@@ -1,5 +1,6 @@
 /* runge_kutta.c: ARKStep applied to the right-hand side of ode_rhs.h. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "school/diagnostics_energy.h"
@@ -165,6 +166,8 @@ static enum status unstable(const struct runge_kutta *solver, double t, const ch
     int worst = school->fish[0].at.vx;
     if (*why == '\0') why = "the equations have no finite value";
     ARKodeGetLastStep(solver->arkode, &step);
+    char with[64] = "even in the first step";
+    if (step > 0) snprintf(with, sizeof with, "with the last step, %.3g s,", step);
 
     // the velocity that is largest in units of its scale, or is not a number
     for (int f = 0; f < school->n_fish; f++) {
@@ -184,10 +187,10 @@ static enum status unstable(const struct runge_kutta *solver, double t, const ch
                                     : "; or the control is unstable: lower control.gain, and check that the desired "
                                       "heading is reachable";
     return status_fail(STATUS_SOLVER,
-                       "unstable at t = %.10g s: %s; the largest velocity is %s[%d] of fish %s; the last step was "
-                       "%.3g s, with which the body is too stiff for an explicit method: choose solver.method: ida, or "
-                       "a smaller solver.step%s",
-                       t, why, place.name, place.index, fish->name, step, control);
+                       "unstable at t = %.10g s: %s; the largest velocity is %s[%d] of fish %s; %s the body "
+                       "is too stiff for an explicit method: choose solver.method: ida%s%s",
+                       t, why, place.name, place.index, fish->name, with,
+                       solver->options.step > 0 ? ", or a smaller solver.step" : "", control);
 }
 
 static enum status runge_kutta_advance(void *data, double t, const volatile sig_atomic_t *stop) {

@@ -85,6 +85,16 @@ TEST(an_unstable_step_ends_with_a_message_that_tells_the_time) {
     // which one, and where
     assert_non_null(strstr(status_message(), "the largest velocity is v"));
     assert_non_null(strstr(status_message(), "] of fish fish1;"));
+    assert_non_null(strstr(status_message(), "or a smaller solver.step"));
+}
+
+TEST(a_body_too_stiff_for_the_first_step_has_no_last_step) {
+    struct simulation *const simulation =
+        school_simulation(SCHOOL_DEFAULTS
+                          "time: {end: 1, shedding_interval: 0.02}\nsolver: {method: dormand_prince}\n"
+                          "fish: [{nodes: 9, body: {modulus: 1.0e+20}}]\n");
+    school_fails(simulation, "even in the first step the body is too stiff for an explicit method");
+    assert_null(strstr(status_message(), "solver.step"));
 }
 
 // twenty steps between two events
