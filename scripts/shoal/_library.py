@@ -252,8 +252,15 @@ def netcdf_path(path):
     return path
 
 
+def refuse_masked(value, what: str):
+    """NumPy hands over what is behind a mask, or NaN."""
+    if np.ma.is_masked(value):
+        raise CaseError(f"{what}: a value is masked: fill it first")
+
+
 def number_of(value, what: str) -> float:
     """A finite number for the library."""
+    refuse_masked(value, what)
     if isinstance(value, (str, bytes)) or np.ndim(value) != 0:
         raise TypeError(f"{what} is one number, not {kind(value)}")
     try:
@@ -267,6 +274,7 @@ def number_of(value, what: str) -> float:
 
 def numbers_of(value, what: str, most: int = 2**28) -> np.ndarray:
     """At most as many numbers for the library, in C order; more are refused before they are copied."""
+    refuse_masked(value, what)
     try:
         array = np.asarray(value)
     except ValueError as error:  # lists of different lengths

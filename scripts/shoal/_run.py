@@ -29,6 +29,8 @@ KEYS = ("wave.amplitude", "wave.frequency", "control.bias", "control.desired_hea
 
 def _plain(value):
     """NumPy's numbers and arrays as JSON."""
+    if np.ma.is_masked(value):
+        raise ValueError("a value is masked: fill it first")
     if isinstance(value, (np.ndarray, np.generic)):
         return value.tolist()
     if isinstance(value, os.PathLike):
@@ -291,8 +293,11 @@ class Run:
 
     def step(self, n: int = 1):
         """Advance by n events, each one shedding interval later."""
-        if n != 1:
-            n = int(number_of(n, "step: a number of events"))
+        if type(n) is not int or n < 0:
+            number = number_of(n, "step: a number of events")
+            n = int(number)
+            if n != number:
+                raise CaseError(f"step: {number} events: the number is whole")
             if n < 0:
                 raise CaseError(f"step: {n} events: the number cannot be negative")
         with (self._handle or self._open()).lock:
