@@ -305,9 +305,6 @@ static enum status flow_at_points(struct shoal *run, int n, const double *points
     for (int i = 0; i < n; i++) {
         x[i] = points[2 * i];
         y[i] = points[2 * i + 1];
-        if (!isfinite(x[i]) || !isfinite(y[i])) {
-            return status_fail(STATUS_CASE, "shoal_flow: point %d, (%g, %g), is not finite", i, x[i], y[i]);
-        }
     }
 
     flow_field(run->simulation->residual->flow, run->simulation->state, &at, false);
@@ -327,6 +324,12 @@ int shoal_flow(struct shoal *run, int n, const double *points, double *velocity,
     TRY(handle_need(points, __func__, "points"));
     TRY(handle_need(velocity, __func__, "velocity"));
     TRY(handle_check_alive(run, __func__));
+    for (int i = 0; i < n; i++) {
+        if (isfinite(points[2 * i]) && isfinite(points[2 * i + 1])) continue;
+        return status_fail(STATUS_CASE, "%s: point %d, (%g, %g), is not finite", __func__, i, points[2 * i],
+                           points[2 * i + 1]);
+    }
+
     struct arena *arena = NULL;
     const enum status status = flow_at_points(run, n, points, velocity, vorticity, &arena);
     arena_free(arena);

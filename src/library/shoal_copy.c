@@ -52,18 +52,27 @@ int shoal_restore(struct shoal *run, struct shoal *from) {
 // no run can have a result file of this name, so `shoal resume` refuses the checkpoint
 static const char no_result[] = "(memory)";
 
-int shoal_save(struct shoal *run, const char *path) {
+/* Write a run in an arena that the caller frees. */
+static enum status save_run(struct shoal *run, const char *path, struct arena **arena) {
     MEMORY_BOUNDARY(STATUS_MEMORY);
-    TRY(handle_check_alive(run, __func__));
-    TRY(handle_need(path, __func__, "path"));
-    TRY(target_check(path, TARGET_CHECKPOINT, true));
-    TRY(handle_renew(run));
-    const struct checkpoint checkpoint = {.effective = case_show(run->arena, &run->shared->values),
+    *arena = arena_create(NULL, path);
+    const struct checkpoint checkpoint = {.effective = case_show(*arena, &run->shared->values),
                                           .result = no_result,
                                           .places = "",
                                           .totals = run->when_reached,
                                           .wall_time = simulate_wall_time(run->simulation)};
-    return checkpoint_write(run->arena, path, NULL, &checkpoint, run->simulation->state, run->simulation->school);
+    return checkpoint_write(*arena, path, NULL, &checkpoint, run->simulation->state, run->simulation->school);
+}
+
+int shoal_save(struct shoal *run, const char *path) {
+    TRY(handle_check_alive(run, __func__));
+    TRY(handle_need(path, __func__, "path"));
+    TRY(target_check(path, TARGET_CHECKPOINT, true));
+    TRY(handle_renew(run));
+    struct arena *arena = NULL;
+    const enum status status = save_run(run, path, &arena);
+    arena_free(arena);
+    return status;
 }
 
 static enum status load_run(struct shoal *run, const void *data) {

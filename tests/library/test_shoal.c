@@ -1261,6 +1261,26 @@ static void make_saved_path(void) {
     assert_int_equal(unlink(saved_path), 0);
 }
 
+TEST(saving_and_flow_leave_no_memory_and_wrong_points_take_none) {
+    struct shoal *const run = swum(*state);
+    make_saved_path();
+    assert_int_equal(shoal_save(run, saved_path), SHOAL_OK);
+    const int n_before = n_live;
+    for (int i = 0; i < 3; i++) assert_int_equal(shoal_save(run, saved_path), SHOAL_OK);
+    assert_int_equal(unlink(saved_path), 0);
+    assert_int_equal(shoal_save(run, "/no/such/folder/x.ckpt"), SHOAL_FILE);
+    assert_int_equal(n_live, n_before);
+
+    // the last point is refused before memory is requested
+    enum { N = 1 << 20 };
+    double *const points = arena_new(test_arena(), 2 * N, sizeof *points), *const velocity = arena_new(
+                                                                               test_arena(), 2 * N, sizeof *velocity);
+    points[2 * N - 1] = NAN;
+    const size_t n_bytes_before = n_bytes;
+    assert_int_equal(shoal_flow(run, N, points, velocity, NULL), SHOAL_USAGE);
+    BELOW(n_bytes - n_bytes_before, 4096);
+}
+
 TEST(a_saved_run_goes_on_with_the_bits_of_the_run) {
     struct shoal *const run = opened(*state, sizeof led / sizeof *led, led), *loaded;
     assert_int_equal(shoal_advance(run, 0.2), SHOAL_OK);
