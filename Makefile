@@ -107,7 +107,8 @@ library_objects = $(patsubst src/%.c,$(B)/%.o,$(wildcard $(patsubst %,src/%/*.c,
 
 test_names   = $(or $(TEST),*)
 c_tests      = $(patsubst tests/%.c,$(B)/tests/%,$(wildcard $(test_names:%=tests/*/test_%.c)))
-# tests/extra needs further packages, and tests/slurm a cluster: they belong to make test-all, or are named with TEST
+# tests/extra needs further packages or minutes, and tests/slurm a cluster: they belong to make test-all, or are named
+# with TEST
 shell_tests  = $(filter-out $(if $(TEST),,tests/extra/%) tests/slurm/%,$(wildcard $(test_names:%=tests/*/test_%.sh)))
 extra_tests  = $(wildcard $(test_names:%=tests/extra/test_%.sh))
 # C tests of more than three seconds, not in make check
@@ -158,7 +159,7 @@ test: deps  ## install what is missing, build, test the program (minutes)
 	@$(parallel) tests
 	@scripts/run-tests.sh $(program) $(c_tests) $(shell_tests)
 
-test-extra: deps  ## test documents, site, notebook, pages in a browser, files of VTK, manual and packages
+test-extra: deps  ## test documents, figures, site, pages in a browser, files of VTK, manual, packages, faults, classical results
 	@scripts/install-deps.sh $(extra_packages)
 	@$(parallel) tests
 	@scripts/run-tests.sh $(program) $(extra_tests)

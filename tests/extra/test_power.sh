@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Power cuts: a result without the last rows, and a sample of states after a cut at any time (1000 cuts: make soak).
 #
-#   tests/faults/test_power.sh PROGRAM
+#   tests/extra/test_power.sh PROGRAM
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 

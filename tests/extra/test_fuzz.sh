@@ -2,7 +2,7 @@
 # A thousand mutated cases, a thousand mutated files of runs, studies and fields, and a thousand mutated checkpoints:
 # from a fixed seed. More and new mutations: make fuzz.
 #
-#   tests/faults/test_fuzz.sh PROGRAM
+#   tests/extra/test_fuzz.sh PROGRAM
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 

@@ -2,7 +2,7 @@
 # Faults of the system and of the surroundings: a sample of failing calls (all of them: make soak), closed standard
 # files, closed pipes, signals that are ignored, threads and memory that are not there.
 #
-#   tests/faults/test_faults.sh PROGRAM
+#   tests/extra/test_faults.sh PROGRAM
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 

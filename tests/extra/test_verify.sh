@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The fast part of the checks against classical results (seconds). All checks: make verify.
 #
-#   tests/app/test_verify.sh PROGRAM
+#   tests/extra/test_verify.sh PROGRAM
 #
 # PROGRAM is build/shoal; the program of the checks is verify/verify in the same folder.
 # shellcheck source=tests/checks.sh

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The scripts that draw: each makes a picture from a short run, and refuses wrong input with the right exit code.
 #
-#   tests/app/test_scripts.sh PROGRAM
+#   tests/extra/test_scripts.sh PROGRAM
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 
