@@ -276,7 +276,7 @@ deps:  ## install the packages that are missing (nothing to do: no output)
 
 install: $(program) $(library) $(shared) $(manual) $(completion)  ## install program, library, header, module, cases, scripts, documents
 	$(say) INST '$(DESTDIR)$(prefix)'
-	$(quiet)install -d $(addprefix '$(DESTDIR)$(prefix)'/,bin include share/man/man1 share/man/man5 share/bash-completion/completions $(addprefix share/shoal/,cases/include cases/studies scripts doc))
+	$(quiet)install -d $(addprefix '$(DESTDIR)$(prefix)'/,bin include share/man/man1 share/man/man5 share/bash-completion/completions $(addprefix share/shoal/,cases/article cases/include cases/studies scripts doc))
 	$(quiet)install -m 755 $(program) '$(DESTDIR)$(prefix)/bin'
 	$(quiet)install -m 644 include/shoal.h '$(DESTDIR)$(prefix)/include'
 	$(quiet)install -d '$(DESTDIR)$(libdir)/pkgconfig'
@@ -285,9 +285,10 @@ install: $(program) $(library) $(shared) $(manual) $(completion)  ## install pro
 	$(quiet)ln -sf libshoal.so.$(VERSION) '$(DESTDIR)$(libdir)/$(soname)'
 	$(quiet)ln -sf $(soname) '$(DESTDIR)$(libdir)/libshoal.so'
 	$(quiet)install -m 644 cases/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases'
+	$(quiet)install -m 644 cases/article/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/article'
 	$(quiet)install -m 644 cases/include/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/include'
 	$(quiet)install -m 644 cases/studies/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/studies'
-	$(quiet)install -m 755 $(filter-out scripts/make-% scripts/verify.py scripts/measure.py scripts/documents.py scripts/figures.py scripts/drawings.py scripts/mutants.py,$(wildcard scripts/*.py)) '$(DESTDIR)$(prefix)/share/shoal/scripts'
+	$(quiet)install -m 755 $(filter-out scripts/make-% scripts/verify.py scripts/measure.py scripts/documents.py scripts/figures.py scripts/drawings.py scripts/mutants.py scripts/article.py,$(wildcard scripts/*.py)) '$(DESTDIR)$(prefix)/share/shoal/scripts'
 	$(quiet)install -d '$(DESTDIR)$(python_modules)/shoal' '$(DESTDIR)$(prefix)/share/shoal/doc/'{examples,figures/gallery}
 	$(quiet)rm -f '$(DESTDIR)$(python_modules)/shoal.py'
 	$(quiet)install -m 644 scripts/shoal/*.py '$(DESTDIR)$(python_modules)/shoal'

@@ -133,10 +133,10 @@ STUDY = "cases/studies/"
 FIGURES = {
     **{f"model_{name}": [f"scripts/drawings.py {name} model_{name}.png"] for name in ("rod", "curvature", "outline", "sheet", "ring")},
     "demo": ["shoal run cases/demo.yaml -q -o demo.nc", "plot.py swim demo.nc demo.png"],
-    "gait": ["shoal run cases/gait.yaml -q -o gait.nc", "plot.py gait gait.nc gait.png --shapes 20"],
-    "single_turn": ["shoal run cases/single_turn.yaml -q -o single_turn.nc",
-                    "plot.py swim single_turn.nc --no-follow --times 3 5 8 15 -- single_turn.png"],
-    "diamond": ["shoal run cases/diamond.yaml -q -o whole_diamond.nc", "plot.py swim whole_diamond.nc --no-follow --times 2 10 25 -- diamond.png"],
+    "figure5": ["shoal run cases/article/figure5.yaml -q -o figure5.nc", "plot.py gait figure5.nc figure5.png --shapes 20"],
+    **{name: [f"shoal run cases/article/{name}.yaml -q -o {name}.nc", f"plot.py swim {name}.nc --no-follow --times {times} -- {name}.png"]
+       for name, times in (("figure6_free", "2 10 20"), ("figure6_turn", "2 5 10 20"), ("figure7_free", "2 10 20"),
+                           ("figure7_control", "2 10 20"), ("figure8", "2 10 25"))},
     "school": ["shoal run cases/school.yaml -q -o school.nc", "plot.py swim school.nc --times 2 10 30 -- school.png"],
     "crowd": [CROWD, "plot.py swim crowd.nc --times 3 -- crowd.png"],
     "crowd_distances": [CROWD, "plot.py school crowd.nc crowd_distances.png"],

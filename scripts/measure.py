@@ -858,33 +858,6 @@ def leg_impulse(bench):
         yield name, f"{drag:.3f}", f"{legs:.3f}", f"{legs / drag:.2f}", short(balance / drag)
 
 
-def last_beat(results, name, fish=0):
-    """Mean of a variable over the last second of a run of 1 Hz."""
-    n = int(round(1 / (results.time[-1] - results.time[-2])))
-    return float(np.mean(results[name][-n:, fish]))
-
-
-@table("quantity", "case", "the article's model, converged", "case", "default model")
-def article(bench):
-    """results of the article's cases, with the converged model of the article and with the defaults (two minutes)"""
-    speeds = [bench.run("single_free", f"fish[0].start.speed={v}")["speed"][-1, 0] for v in (0, 1, 3)]
-    swim = bench.run("swim")
-    yield ("speed of one fish after the run [m/s]", "single_free", ", ".join(f"{v:.3f}" for v in speeds), "swim",
-           f"{swim['speed'][-1, 0]:.3f}")
-    for what, theirs, ours, fishes in (("headings of a diamond [degree]", "diamond", "school", range(4)),
-                                       ("headings of a pair [degree]", "pair_heading", "pair", range(2)),
-                                       ("heading after a turn to 135 degrees", "single_turn", "turn", range(1))):
-        cells = []
-        for name in (theirs, ours):
-            run = bench.run(name)
-            cells += [name, ", ".join(f"{last_beat(run, 'heading', f):.1f}" for f in fishes)]
-        yield what, *cells
-    for what, name in (("steps per event, own scheme", "single_published"),):
-        run, other = bench.run(name), bench.run("single_free")
-        yield (what, name, per_event(run)[0], "swim", per_event(swim)[0])
-        yield ("steps per event, made to converge", "single_free", per_event(other)[0], "", "")
-
-
 # ---- documents ----
 
 COMMAND = re.compile(r"^`scripts/measure\.py ([a-z_]+)`")

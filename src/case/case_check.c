@@ -570,7 +570,8 @@ static void check_control(const struct check *check) {
     complain_if(is_free && fabs(control->gain - free_gain) > 0, check, "fish.control.gain",
                 "has no effect with 'law: none': remove the key");
     const double period = fish->wave.frequency > 0 ? 1 / fish->wave.frequency : 0;
-    const bool has_filter = fabs(control->filter - period) > 1e-9 * period;  // durations are rounded
+    // neither the default, up to the rounding of durations, nor the 0 of preset: published
+    const bool has_filter = control->filter > 0 && fabs(control->filter - period) > 1e-9 * period;
     complain_if(!has_moment(control) && has_filter, check, "fish.control.filter",
                 "has no effect without feedforward: remove the key");
     complain_if(control->law != CONTROL_COURSE && fabs(control->course_filter - period / 4) > 1e-9 * period, check,

@@ -229,8 +229,7 @@ const struct key case_table[] = {
                 "vortex appears at each event",
      .words = WORDS("continuous", "impulsive", "sheet"), .published = "impulsive"},
     {"wake.removed_circulation", CHOICE, AT(school.wake.removed_circulation), "retained", ANY, "",
-     .meaning = "circulation of removed vortices in Kelvin's theorem", .published = "dropped",
-     .words = WORDS("retained", "dropped")},
+     .meaning = "circulation of removed vortices in Kelvin's theorem", .words = WORDS("retained", "dropped")},
     {"wake.tolerance", REAL, AT(school.wake.tolerance), NULL, FROM_TO(0, 0.01), "",
      .meaning = "estimated error allowed in the velocity that far vortices induce at the bodies, in body lengths per "
                 "beat; 0: direct summation",
@@ -276,7 +275,7 @@ const struct key case_table[] = {
                 "sets the shedding rate",
      .published = "rate", .words = WORDS("edge", "rate"), .synonyms = "kutta_condition"},
     {"sheet.kutta_ramp", REAL, AT(school.sheet.kutta_ramp), "0", FROM(0), "s",
-     .meaning = "kutta rate: time over which shedding is ramped up", .published = "0.5"},
+     .meaning = "kutta rate: time over which shedding is ramped up"},
 
     {"contact.action", CHOICE, AT(school.contact.action), "repel", ANY, "",
      .meaning = "bodies closer than contact.range; repel: a repulsive force; warn: a warning in the result; stop: the "
@@ -440,7 +439,7 @@ const struct key case_table[] = {
     {"fish.wave.phase", REAL, IN_FISH(wave.phase), "0", ANGLE, "degree", .meaning = "phase at time 0"},
     {"fish.wave.ramp", REAL, IN_FISH(wave.ramp), NULL, FROM(0), "s",
      .meaning = "time over which the amplitude is ramped up", .derived = "one period, 1/frequency (0 for frequency 0)",
-     .derive = derive_fish, .cause = "fish.wave.frequency", .published = "0"},
+     .derive = derive_fish, .cause = "fish.wave.frequency"},
 
     {"fish.drag.tangential", REAL, IN_FISH(drag.tangential), "4e-3", FROM(0), "",
      .meaning = "tangential drag coefficient (friction)", .synonyms = "friction c_f cf", .published = "1e-3"},
@@ -463,7 +462,7 @@ const struct key case_table[] = {
      .synonyms = "form_factor"},
     {"fish.drag.normal", REAL, IN_FISH(drag.normal), NULL, FROM(0), "",
      .meaning = "coefficient of the drag across the body: with force pressure, of the separated cross-flow",
-     .synonyms = "c_d cd lateral", .published = "0.5",
+     .synonyms = "c_d cd lateral", .published = "4",
      .derived = "1, or 0 with force pressure and span infinite or a prescribed motion", .derive = derive_fish,
      .follows = WORDS("fish.force", "fish.pressure.span", "fish.motion.prescribed")},
     {"fish.drag.law", CHOICE, IN_FISH(drag.law), "quadratic", ANY, "",
@@ -546,7 +545,7 @@ const struct key case_table[] = {
     {"fish.control.filter", REAL, IN_FISH(control.filter), NULL, FROM(0), "s",
      .meaning = "time constant of the filter of feedforward; 0: the moment at the last event",
      .derived = "one period, 1/wave.frequency (0 for frequency 0)", .derive = derive_fish,
-     .cause = "fish.wave.frequency"},
+     .cause = "fish.wave.frequency", .published = "0"},
     {"fish.control.rate", REAL, IN_FISH(control.rate), "2", ABOVE(0), "s-1",
      .meaning = "averaged_heading, course: maximum rate of change of the steering bias"},
     {"fish.control.ramp", REAL, IN_FISH(control.ramp), NULL, ABOVE(0), "s",

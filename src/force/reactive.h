@@ -1,8 +1,8 @@
 /* reactive.h: reactive force on the edges of a body (added mass), and momentum flux at the tail.
  * doc/model.md, section 9. Tested by tests/force/test_reactive.c.
  *
- * fish->force selects Lagrange's equations of the kinetic energy of the fluid (reactive) or the force of the article
- * (published: only the added mass across the edge, no flux at the tail).
+ * fish->force selects Lagrange's equations of the kinetic energy of the fluid (reactive) or the article's force, which
+ * is only the added mass across the edge, without flux at the tail (published).
  *
  * w: velocity of the midpoint of the edge relative to the fluid; b: acceleration of the external flow. */
 #ifndef REACTIVE_H

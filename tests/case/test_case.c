@@ -224,16 +224,18 @@ TEST(preset_published_sets_the_options_of_the_article) {
     assert_int_equal(s.preset, PRESET_PUBLISHED);
     assert_int_equal(s.school.fish->body.second_moment, SECOND_MOMENT_PUBLISHED);
     assert_int_equal(s.school.fish->body.section, SECTION_NODES);
-    NEAR(s.school.fish->wave.ramp, 0, 0, 0);
+    NEAR(s.school.fish->wave.ramp, 1, 0, 0);
     assert_int_equal(s.school.sheet.collocation, COLLOCATION_MIDPOINT);
     assert_int_equal(s.school.sheet.kutta, KUTTA_RATE);
-    NEAR(s.school.sheet.kutta_ramp, 0.5, 0, 0);
+    NEAR(s.school.sheet.kutta_ramp, 0, 0, 0);
     assert_int_equal(s.school.wake.shedding, SHEDDING_IMPULSIVE);
     NEAR(s.school.sheet.smoothing, 0.01, 0, 0);
     NEAR(s.school.wake.lifetime.seconds, 2, 0, 0);
     NEAR(s.school.wake.decay.seconds, 0, 0, 0);
-    assert_int_equal(s.school.wake.removed_circulation, REMOVED_DROPPED);
+    assert_int_equal(s.school.wake.removed_circulation, REMOVED_RETAINED);
     assert_int_equal(s.school.fish->drag.law, DRAG_QUADRATIC);
+    NEAR(s.school.fish->drag.normal, 4, 0, 0);
+    NEAR(s.school.fish->control.filter, 0, 0, 0);
     assert_int_equal(s.school.fish->added_mass.extent, EXTENT_THICKNESS);
 }
 

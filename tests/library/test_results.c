@@ -65,10 +65,12 @@ static const struct run {
                      "start: {position: [0.3, 0.5], heading: 190},\n     wave: {frequency: 3}}]\n"},
     {"published",
      "format: 1\ntime: {end: 0.3, shedding_interval: 0.0125}\nsolver: {method: rk4, step: 2.5e-4}\npreset: published\n"
-     "fluid: {velocity: [0.2, 0.1]}\nwake: {lifetime: 0.1}\n"
+     "fluid: {velocity: [0.2, 0.1]}\nwake: {lifetime: 0.1, removed_circulation: dropped}\nsheet: {kutta_ramp: 0.5}\n"
+     "defaults: {fish: {drag: {normal: 0.5}}}\n"
      "fish: [{sheet_points: 15, wave: {frequency: 4, ramp: 0.2}, start: {speed: 0.7}},\n"
-     "    {sheet_points: 13, length: 0.8, wave: {frequency: 3}, start: {position: [0.2, 0.6], speed: 0.5, heading: "
-     "170},\n     control: {law: heading, desired_heading: [[0, 170], [0.3, 150]], feedforward: 0.5, filter: 0.2}}]\n"},
+     "    {sheet_points: 13, length: 0.8, wave: {frequency: 3, ramp: 0}, start: {position: [0.2, 0.6], speed: 0.5,\n"
+     "     heading: 170},\n     control: {law: heading, desired_heading: [[0, 170], [0.3, 150]], feedforward: 0.5, "
+     "filter: 0.2}}]\n"},
     {"steered", TIME STREAM
      "wake: {shedding: continuous, removed_circulation: dropped, lifetime: 0.12, decay: 0.05}\n"
      "fish: [{" SLENDER ", start: {speed: 0.8}, control: {law: heading, waypoints: [[-0.3, 0.2], [-1, -1]],\n"
