@@ -498,6 +498,17 @@ def start(bench):
             yield power(modulus), f"{ramp:g}", *(per_event(run) if run else ["failed", "", ""])
 
 
+@table("modulus [Pa]", "error_test", *COUNTS, "speed [m/s]", "balance [J]", "CPU time [s]")
+def error_test(bench):
+    """cases/swim.yaml for 8 s with the errors of the positions or of all unknowns in the error test (a minute)"""
+    for modulus in (1e6, 1e9):
+        for words in ("positions", "all"):
+            keys = "time.end=8", f"{MODULUS}={modulus:g}", f"solver.error_test={words}"
+            run = bench.run("swim", *keys)
+            yield (power(modulus), words, *per_event(run), f"{run['speed'][-1, 0]:.4f}", short(abs(run["energy_balance"][-1, 0])),
+                   f"{bench.seconds('swim', *keys):.2f}")
+
+
 @table("start [m/s]", "modulus [Pa]", "1e-4", "3e-5", "1e-5", "1e-6", "half of the interval's")
 def tolerance(bench):
     """errors over solver.rtol: nose or tail [1e-5 L] / work of the muscle [1e-4] (minutes)"""

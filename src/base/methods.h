@@ -19,6 +19,10 @@ enum method {
     METHOD_VERLET
 };
 
+/* The unknowns whose errors decide about the steps of ida: the differential ones, whose tolerances leave that to the
+ * positions, or the algebraic ones as well: accelerations, strengths of the sheets, velocities beside momenta. */
+enum error_test { ERROR_TEST_POSITIONS, ERROR_TEST_ALL };
+
 /* No method has a higher order. */
 enum { METHODS_MAX_ORDER = 5 };
 

@@ -294,6 +294,10 @@ const struct key case_table[] = {
      .meaning = "highest order of ida (doc/numerics.md, section 3)",
      .derived = "3; 5 if the slowest bending mode of every fish is below 0.6 of the beat frequency; 2 if a fish has a "
                 "relaxation_time below 1/1000 of the beat period"},
+    {"solver.error_test", CHOICE, AT(solver.error_test), "positions", ANY, "",
+     .meaning = "unknowns in the error test of ida; all: also accelerations and sheets, whose errors make the steps "
+                "four times as small (doc/numerics.md, section 3)",
+     .words = WORDS("positions", "all"), .synonyms = "error_control"},
     {"solver.coupling_distance", REAL, AT(school.coupling_distance), "0.5", FROM(0), "",
      .meaning = "distance of two fish up to which the Jacobian couples them, in lengths of the longest fish"},
     {"solver.linear", CHOICE, AT(school.linear), "blocks", ANY, "",

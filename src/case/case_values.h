@@ -18,6 +18,7 @@ struct case_time {
 
 struct case_solver {
     enum method method;
+    enum error_test error_test;
     int order;
     double rtol;   /* error tolerance: doc/numerics.md, section 3 */
     double step;   /* s; 0: adaptive */

@@ -46,6 +46,7 @@ static struct simulation *simulation_begin(struct arena *parent, const struct ca
     new->n_events = lround(values->time.end / values->school.shedding_interval);
     new->integrator = integrator_of(values->solver.method);
     new->options = (struct integrator_options){.method = values->solver.method,
+                                               .error_test = values->solver.error_test,
                                                .rtol = values->solver.rtol,
                                                .step = values->solver.step,
                                                .max_steps = values->solver.max_steps};

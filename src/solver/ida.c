@@ -174,7 +174,7 @@ static enum status ida_create(struct arena *arena, void **created, struct residu
         sundials_context_own(&solver->context, OWNED_IDA, IDACreate(solver->context.context));
     if (IDASetErrHandlerFn(ida, sundials_context_message, &solver->failure) || IDASetUserData(ida, solver) ||
         IDAInit(ida, residual_callback, state->t, solver->y, solver->yp) || IDAWFtolerances(ida, weights_callback) ||
-        IDASetId(ida, solver->kinds) || IDASetSuppressAlg(ida, 1) ||
+        IDASetId(ida, solver->kinds) || IDASetSuppressAlg(ida, options->error_test == ERROR_TEST_POSITIONS) ||
         IDASetLinearSolver(ida, solver->linear.solver, solver->linear.matrix) || IDASetJacFn(ida, jacobian_callback) ||
         IDASetNonlinearSolver(ida, solver->newton) || IDASetNonlinConvCoef(ida, newton_coefficient) ||
         IDASetMaxOrd(ida, options->order) || IDASetDeltaCjLSetup(ida, cj_change) ||

@@ -28,6 +28,7 @@ struct integrator_counts {
 
 struct integrator_options {
     enum method method;
+    enum error_test error_test;
     int order;     /* maximum order of BDF */
     double rtol;   /* error tolerance in units of residual_scale */
     double step;   /* fixed step of all other methods, s; 0: adaptive */

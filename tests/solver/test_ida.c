@@ -93,6 +93,20 @@ TEST(the_totals_of_the_solver_fit_together) {
     }
 }
 
+TEST(errors_of_all_unknowns_make_smaller_steps) {
+    double steps[2];
+    for (int i = 0; i < 2; i++) {
+        struct simulation *const simulation = school_simulation_of(
+            SCHOOL_DEFAULTS
+            "time: {end: 2, shedding_interval: 0.02}\nsolver: {error_test: %s}\nfish: [{body: {modulus: 1e9}}]\n",
+            i == 0 ? "positions" : "all");
+        school_run(simulation, 2);
+        steps[i] = (double)counts_of(simulation).steps;
+    }
+    // about four times as many: doc/numerics.md, section 3
+    AT_LEAST(steps[1], 2 * steps[0]);
+}
+
 TEST(klu_makes_the_same_run_as_the_blocks) {
     static const char text[] =
         "time: {end: 1, shedding_interval: 0.02}\nsolver: {linear: %s}\ndefaults: {fish: {start: {speed: 0.8}}}\n"
