@@ -838,6 +838,81 @@ def merge(bench):
                f"{bench.seconds(case, f'wake.merge={limit}') / seconds:.2f}")
 
 
+# Two rigid foils of tests/verify/data/school_navier_stokes.csv: chord 1, period 1, Re 1000.
+FOILS = """\
+format: 1
+time: {{end: 6, shedding_interval: 0.01, output_interval: 1}}
+fluid: {{density: 1, viscosity: 1.25e-3}}
+{}
+defaults:
+  fish:
+    nodes: 9
+    force: pressure
+    pressure: {{span: infinite}}
+    start: {{speed: 1.25}}
+    wave: {{amplitude: 0, frequency: 0}}
+    body: {{profile: uniform, thickness: 0.08, depth: 1}}
+    motion: {{prescribed: all, heave: 0.125, pitch: 10, pitch_phase: 90, pivot: 0.33333333, frequency: 1}}
+fish:
+  - {{name: first}}
+{}"""
+UNDECAYED = "wake: {lifetime: 12, decay: 1}"
+
+
+def reference(name):
+    """The rows of a table of tests/verify/data."""
+    with open(os.path.join(HERE, "tests/verify/data", name), encoding="utf-8") as file:
+        return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+
+def power_and_thrust(bench, wake, second=""):
+    """Coefficients of power and thrust of every foil, mean of the last two periods."""
+    run = bench.run(FOILS.format(wake, second))
+    return (np.mean(run["mean_power"][-2:], axis=0) / (0.5 * 1.25**3),
+            np.mean(run["mean_thrust"][-2:], axis=0) / (0.5 * 1.25**2))
+
+
+@table("foil 2", "phase", "CP ratio of foil 1: NS", "default", "undecayed", "CP ratio of foil 2: NS", "default", "undecayed",
+       "change of CP of foil 2: NS", "default", "undecayed", "change of CT of foil 2: NS", "default", "undecayed")
+def pairs_of_foils(bench):
+    """two foils beside a Navier-Stokes solution, with the default wake and with one that does not fade (a minute)"""
+    wakes = ("", UNDECAYED)
+    alone = [power_and_thrust(bench, wake) for wake in wakes]
+    for row in reference("school_navier_stokes.csv"):
+        distance, phase = float(row["distance"]), int(row["phase"])
+        place = (1 + distance, 0) if row["place"] == "in line" else (0, distance)
+        second = f"  - {{name: second, start: {{position: [{place[0]}, {place[1]}]}}, motion: {{phase: {phase}}}}}\n"
+        of = [power_and_thrust(bench, wake, second) for wake in wakes]
+        ratio = [[power[i] / single[0][0] for (power, _), single in zip(of, alone)] for i in (0, 1)]
+        power = [of[k][0][1] - alone[k][0][0] for k in (0, 1)]
+        thrust = [of[k][1][1] - alone[k][1][0] for k in (0, 1)]
+        yield (f"{row['place']}, {distance:g}", phase, row["power1"], *(f"{value:.2f}" for value in ratio[0]),
+               row["power2"], *(f"{value:.2f}" for value in ratio[1]),
+               f"{0.610 * (float(row['power2']) - 1):+.2f}", *(f"{value:+.2f}" for value in power),
+               f"{float(row['thrust2']):+.2f}", *(f"{value:+.2f}" for value in thrust))
+
+
+@table("gap [L]", "NS: power ratio", "place [L]", "default", "place [L]", "undecayed", "place [L]")
+def pairs_of_swimmers(bench):
+    """a swimmer that follows another one beside a Navier-Stokes solution of its midlines (a minute)"""
+    with open(os.path.join(CASES, "swimmer_navier_stokes.yaml"), encoding="utf-8") as file:
+        text = file.read()
+    head, fish = text.split("fish:\n  - name: swimmer\n")
+    body = "".join(f"  {line}\n" for line in fish.rstrip("\n").split("\n"))
+    begin = head.replace("end: 12", "end: 6")
+    pair = (f"defaults:\n  fish:\n{body}fish:\n  - {{name: first, start: {{speed: 0.634}}}}\n"
+            "  - {name: second, start: {position: [%g, 0], speed: 0.634}}\n")
+    for row in reference("swimmers_navier_stokes.csv"):
+        cells = []
+        for wake in ("", UNDECAYED + "\n"):
+            run = bench.run(begin + wake + pair % (1 + float(row["gap"])))
+            n = int(round(1 / (run.time[-1] - run.time[-2])))
+            behind = np.mean(run["x"][-n:, 1, 0] - run["x"][-n:, 0, 0], axis=0)
+            power = run["mean_power"][-1]
+            cells += [f"{power[1] / power[0]:.2f}", f"{behind[0]:.2f}, {abs(behind[1]):.2f}"]
+        yield row["gap"], f"{row['power']} ({row['wake']})", f"{row['along']}, {row['beside']}", *cells
+
+
 # Swims for the table leg_impulse: a case or a text, and keys.
 TWO = """\
 format: 1

@@ -1,6 +1,7 @@
 /* validation.c: the section "validation": the cases with foils and a swimmer with force: pressure against an experiment
- * and Navier-Stokes solutions (tests/verify/data). The bounds are ratios and allow for effects outside the model
- * (leading-edge vortices, thickness of the sheet, history of the boundary layer). */
+ * and Navier-Stokes solutions (tests/verify/data). The ratios are the validation. Their bounds are drawn round the
+ * results, so that a change of the program is seen (regression); only the bounds of two foils contain the error of the
+ * source. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -343,6 +344,85 @@ static void mackerel_and_lamprey(void) {
     }
 }
 
+// ---- two foils
+
+/* Coefficients of power and thrust of the last foil, over rho U^3 c/2 and rho U^2 c/2. Foil 2 is at this place, and
+ * ahead by this phase, degree; NAN: foil 1 is alone. */
+struct coefficients {
+    double power, thrust;
+};
+static struct coefficients run_foils(double x, double y, int phase) {
+    const double speed = 1.25;
+    const char *second = "";
+    if (!isnan(x)) {
+        second = verify_text(", {name: second, start: {position: [%.17g, %.17g]}, motion: {phase: %d}}", x, y, phase);
+    }
+    struct simulation *const simulation =
+        verify_open(VERIFY_DEFAULTS
+                    "format: 1\ntime: {end: 6, shedding_interval: 0.01, output_interval: 6}\n"
+                    "fluid: {density: 1, viscosity: 1.25e-3}\ndefaults: {fish: {nodes: 9, force: pressure, "
+                    "pressure: {span: infinite}, start: {speed: %g}, wave: {amplitude: 0, frequency: 0}, "
+                    "body: {profile: uniform, thickness: 0.08, depth: 1}, motion: {prescribed: all, heave: 0.125, "
+                    "pitch: 10, pitch_phase: 90, pivot: 0.33333333, frequency: 1}}}\nfish: [{name: first}%s]\n",
+                    speed, second);
+    verify_run(simulation, 6);
+    simulate_measure(simulation);
+    const struct diagnostics_fish *const of = &simulation->diagnostics->fish[simulation->school->n_fish - 1];
+    return (struct coefficients){of->mean_power / (speed * speed * speed / 2), of->mean_thrust / (speed * speed / 2)};
+}
+
+// what foil 1 changes at foil 2: the friction and the thickness of the foil alone cancel
+static void two_foils(void) {
+    static const char source[] = "Navier-Stokes, Re 1000";
+    static struct table table;
+    read_table("tests/verify/data/school_navier_stokes.csv", &table);
+    const struct coefficients alone = run_foils(NAN, NAN, 0);
+    const double power_alone = 0.610;
+    double power[2][4], thrust[2][4]; /* foil 2 in line at gap 1, by phase: the reference, here */
+    for (int i = 0; i < table.n; i++) {
+        char place[16];
+        int phase;
+        double distance, first, second, first_thrust, change;
+        if (sscanf(table.line[i], "%15[^,],%lf,%d,%lf,%lf,%lf,%lf", place, &distance, &phase, &first, &second,
+                   &first_thrust, &change) != 7) {
+            abort();
+        }
+        const bool is_beside = strcmp(place, "beside") == 0;
+        if (!is_beside && fabs(distance - 1) > 0) continue;
+        const struct coefficients of = run_foils(is_beside ? 0 : 1 + distance, is_beside ? distance : 0, phase);
+        const double reference[2] = {power_alone * (second - 1), change};
+        const double here[2] = {of.power - alone.power, of.thrust - alone.thrust};
+        if (is_beside) {
+            // 15 %, and the error of the source
+            verify_value(verify_text("foils side by side at %g c, %d degrees: change of CP", distance, phase), source,
+                         reference[0], here[0], 0.15 * fabs(reference[0]) + 0.06 * power_alone);
+            verify_value(verify_text("foils side by side at %g c, %d degrees: change of CT", distance, phase), source,
+                         reference[1], here[1], 0.15 * fabs(reference[1]) + 0.015);
+            continue;
+        }
+        for (int k = 0; k < 2; k++) {
+            power[k][phase / 90] = k == 0 ? reference[0] : here[0];
+            thrust[k][phase / 90] = k == 0 ? reference[1] : here[1];
+        }
+    }
+
+    // the first harmonic of the phase: amplitude cos(phase - peak)
+    for (int q = 0; q < 2; q++) {
+        double amplitude[2], peak[2];
+        for (int k = 0; k < 2; k++) {
+            const double *const of = q == 0 ? power[k] : thrust[k];
+            amplitude[k] = hypot(of[0] - of[2], of[1] - of[3]) / 2;
+            peak[k] = atan2(of[1] - of[3], of[0] - of[2]) * 180 / pi;
+        }
+        const char *const name = q == 0 ? "CP" : "CT";
+        // regression
+        verify_ratio(verify_text("foils in line, gap 1 c: change of %s over the phase, amplitude", name), source,
+                     amplitude[0], amplitude[1], 1 / 1.6, 1.6);
+        verify_value(verify_text("foils in line, gap 1 c: phase of most %s, degree", name), source, peak[0], peak[1],
+                     40);
+    }
+}
+
 void verify_validation(void) {
     static struct table table;
     read_table("tests/verify/data/navier_stokes.csv", &table);
@@ -350,6 +430,7 @@ void verify_validation(void) {
     heave(&table);
     if (verify_is_fast()) return;
     swimmer(&table);
+    two_foils();
     trout();
     mackerel_and_lamprey();
 }
