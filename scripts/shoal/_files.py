@@ -164,24 +164,28 @@ def centreline(nodes, at):
 
 
 def half_thickness(thickness, at, is_mean):
-    """Half the thickness at arc coordinates from 0 to 1, from that of the edges; zero at nose and tail.
+    """Half the thickness at arc coordinates from 0 to 1, from that of the edges: the mean of an edge, or the sum of the half
+    thicknesses at its nodes.
 
-    Over the angle whose cosine runs along the body, a blunt nose is as smooth as a sine: what is interpolated is the
-    ratio to the sine, mirrored at both ends. The thickness of an edge is its mean, or the sum of the half thicknesses
-    at its nodes.
+    Near a blunt nose the square of the thickness grows in proportion to the distance, as on a quarter of an ellipse that
+    rises from the nose to the tail: sin(angle) with cos(angle) = 1 - s. What is interpolated over the angle is the square of
+    the ratio of both. It is even about the nose; at the tail, which may be blunt, pointed or round, it is continued in
+    proportion to s. The same as src/view/outline.c.
     """
-    at_nodes = np.arccos(np.linspace(1, -1, thickness.size + 1))
+    at_nodes = np.arccos(np.linspace(1, 0, thickness.size + 1))
     start, end = at_nodes[:-1], at_nodes[1:]
     angle = np.arccos((np.cos(start) + np.cos(end)) / 2)
     of_sine = np.sin(start) + np.sin(end)
     if is_mean:
         of_sine = (end - np.sin(2 * end) / 2 - start + np.sin(2 * start) / 2) / (np.cos(start) - np.cos(end))
-    ratio = thickness / of_sine
-    knots = np.concatenate([[-angle[0]], angle, [2 * np.pi - angle[-1]]])
-    values = np.concatenate([[ratio[0]], ratio, [ratio[-1]]])
+    ratio = (thickness / of_sine) ** 2
+    s = 1 - np.cos(angle[-2:])
+    tail = max(ratio[-1] + (ratio[-1] - ratio[-2]) / (s[1] - s[0]) * (1 - s[1]), 0)
+    knots = np.concatenate([[-angle[0]], angle, [np.pi / 2, np.pi - angle[-1]]])
+    values = np.concatenate([[ratio[0]], ratio, [tail, 2 * tail - ratio[-1]]])
     slopes = np.gradient(values, knots)
-    where = np.arccos(1 - 2 * at)
-    return np.sin(where) * np.maximum(hermite(knots, values, slopes, where), 0)
+    where = np.arccos(1 - at)
+    return np.sin(where) * np.sqrt(np.maximum(hermite(knots, values, slopes, where), 0))
 
 
 def outline(nodes, thickness, is_mean, n=80):
@@ -189,4 +193,4 @@ def outline(nodes, thickness, is_mean, n=80):
     at = (1 - np.cos(np.linspace(0, np.pi, n))) / 2  # dense at nose and tail
     points, normals = centreline(nodes, at)
     half = half_thickness(thickness, at, is_mean)[:, None]
-    return np.concatenate([points + half * normals, (points - half * normals)[-2:0:-1]])
+    return np.concatenate([points + half * normals, (points - half * normals)[:0:-1]])

@@ -5,27 +5,36 @@
 
 #include "fish/shape.h"
 
-/* Half thickness at the points. As a function of the angle whose cosine is the coordinate along the body, the half
- * thickness of a blunt nose is as smooth as a sine. Interpolate the ratio of half thickness to sine, continued
- * symmetrically at both ends. knot, ratio and slope have room for n_nodes + 3. */
+// the arc coordinate of a point of the curve: cosine points
+static double outline_part(int i) {
+    return (1 - cos(M_PI * i / (OUTLINE_POINTS - 1))) / 2;
+}
+
+/* Half thickness at the points. Near a blunt nose the square of the thickness grows in proportion to the distance, as
+ * on a quarter of an ellipse that rises from the nose to the tail: sin(angle) with cos(angle) = 1 - s. What is
+ * interpolated over the angle is the square of the ratio of both. It is even about the nose; at the tail, which may be
+ * blunt, pointed or round, it is continued in proportion to s. knot, ratio and slope have room for n_nodes + 3. */
 static void interpolate_half(const struct outline *outline, const double *thickness, bool is_mean, double *knot,
                              double *ratio, double *slope) {
-    const int n_edges = outline->n_nodes - 1, n = n_edges + 4;
+    const int n_edges = outline->n_nodes - 1, first = 1, last = n_edges, n = n_edges + 3;
     for (int k = 0; k < n_edges; k++) {
-        const double from = acos(1 - 2.0 * k / n_edges), to = acos(1 - 2.0 * (k + 1) / n_edges);
-        knot[k + 2] = acos((cos(from) + cos(to)) / 2);
+        const double from = acos(1 - (double)k / n_edges), to = acos(1 - (k + 1.0) / n_edges);
+        knot[first + k] = acos((cos(from) + cos(to)) / 2);
 
-        // the thickness of this edge for a half thickness equal to the sine; along the body ds = sin(angle)/2 d angle
+        // the thickness of this edge for a half thickness equal to the sine; along the body ds = sin(angle) d angle
         const double mean = ((to - sin(2 * to) / 2) - (from - sin(2 * from) / 2)) / (cos(from) - cos(to));
-        ratio[k + 2] = thickness[k] / (is_mean ? mean : sin(from) + sin(to));
+        const double part = thickness[k] / (is_mean ? mean : sin(from) + sin(to));
+        ratio[first + k] = part * part;
     }
 
-    for (int k = 0; k < 2; k++) {
-        knot[1 - k] = -knot[2 + k];
-        ratio[1 - k] = ratio[2 + k];
-        knot[n - 2 + k] = 2 * M_PI - knot[n - 3 - k];
-        ratio[n - 2 + k] = ratio[n - 3 - k];
-    }
+    knot[0] = -knot[first];
+    ratio[0] = ratio[first];
+    const double at_last = 1 - cos(knot[last]), at_other = 1 - cos(knot[last - 1]);
+    const double rise = (ratio[last] - ratio[last - 1]) / (at_last - at_other) * (1 - at_last);
+    knot[last + 1] = M_PI / 2;
+    ratio[last + 1] = fmax(0, ratio[last] + rise);
+    knot[last + 2] = M_PI - knot[last];
+    ratio[last + 2] = 2 * ratio[last + 1] - ratio[last];
 
     // slopes of the parabolas through three points
     for (int k = 1; k < n - 1; k++) {
@@ -35,17 +44,18 @@ static void interpolate_half(const struct outline *outline, const double *thickn
         slope[k] = (before + after) / (left + right);
     }
 
-    for (int i = 0, k = 1; i < OUTLINE_POINTS; i++) {
-        const double angle = M_PI * i / (OUTLINE_POINTS - 1);
-        while (k < n - 3 && angle > knot[k + 1]) k++;
+    for (int i = 0, k = 0; i < OUTLINE_POINTS; i++) {
+        const double angle = acos(1 - outline_part(i));
+        while (k < last && angle > knot[k + 1]) k++;
 
         // the cubic between knots k and k + 1
         const double length = knot[k + 1] - knot[k], q = (angle - knot[k]) / length, p = 1 - q;
         const double at_angle = (1 + 2 * q) * p * p * ratio[k] + q * p * p * length * slope[k] +
                                 q * q * (3 - 2 * q) * ratio[k + 1] - q * q * p * length * slope[k + 1];
-        outline->half[i] = fmax(0, sin(angle) * at_angle);
+        outline->half[i] = sin(angle) * sqrt(fmax(0, at_angle));
     }
 
+    // the polygon begins in the nose and turns in the tail
     outline->half[0] = outline->half[OUTLINE_POINTS - 1] = 0;
 }
 
@@ -61,8 +71,7 @@ struct outline outline_create(struct arena *arena, int n_nodes, const double *th
     struct curve *const curve = curve_create(temporary, n, 0, 2 * OUTLINE_POINTS);
     for (int i = 0; i < OUTLINE_POINTS; i++) {
         // the last point is the last node, however the cosine is rounded
-        const double part = (1 - cos(M_PI * i / (OUTLINE_POINTS - 1))) / 2;
-        const double u = i < OUTLINE_POINTS - 1 ? part * (n - 1) : n - 1;
+        const double u = i < OUTLINE_POINTS - 1 ? outline_part(i) * (n - 1) : n - 1;
         const struct stencil point = curve_smooth_point(curve, u), slope = curve_smooth_slope(curve, u);
         for (int k = 0; k < n; k++) {
             outline.weight[i * n + k] = point.weight[k];

@@ -20,7 +20,7 @@ struct outline {
     int n_nodes;
     double *weight; /* points of the curve: weights of the nodes                  (OUTLINE_POINTS, n_nodes) */
     double *slope;  /* and of the derivative along the body                       (OUTLINE_POINTS, n_nodes) */
-    double *half;   /* half thickness there, m; 0 at nose and tail                (OUTLINE_POINTS) */
+    double *half;   /* half thickness there, m; 0 at the ends                      (OUTLINE_POINTS) */
 };
 
 /* For a body of n_nodes (at least four) with the thickness of every edge [m] (n_nodes - 1): the mean over the edge if
