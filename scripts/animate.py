@@ -21,6 +21,8 @@ from shoal.plot import GRID, STYLE, Snapshot, add_legend, limits, pyplot, swim_h
 from matplotlib import animation
 
 WIDTH, MOST_HEIGHT, LEAST_HEIGHT = 8.0, 8.0, 2.5  # inches
+# of ffmpeg: the few colours of the whole movie, without dots between them, which no frame has in common with the next one
+GIF_COLOURS = ["-filter_complex", "split[a][b];[a]palettegen=max_colors=32[p];[b][p]paletteuse=dither=none"]
 FEW_ROWS = 8  # of a beat, that shapes between rows are uncertain
 
 
@@ -140,7 +142,7 @@ def choose_writer(movie, fps):
     if ending not in (".mp4", ".gif"):
         stop(f"{movie}: the name of a movie ends in .mp4 or .gif", EXIT_USAGE)
     if shutil.which("ffmpeg"):
-        return animation.FFMpegWriter(fps, bitrate=-1, extra_args=["-pix_fmt", "yuv420p"] if ending == ".mp4" else None)
+        return animation.FFMpegWriter(fps, bitrate=-1, extra_args=["-pix_fmt", "yuv420p"] if ending == ".mp4" else GIF_COLOURS)
     if ending == ".gif":
         return animation.PillowWriter(fps)
     return stop("a .mp4 needs ffmpeg: apt install ffmpeg, or name a .gif", EXIT_USAGE)
@@ -169,8 +171,8 @@ def smooth_path(path, n):
 
 
 def following_window(frames):
-    """The same for a camera that moves with the school, without its beat: the window holds all bodies and 1.5 lengths around
-    them; along walls it holds the walls."""
+    """The same for a camera that moves with the school, without its beat: the window holds all bodies, a length
+    of water ahead of them, and two lengths of their wakes; along walls it holds the walls."""
     frequency = frames.read("frequency")
     step = frames.time[1] - frames.time[0] if frames.time.size > 1 else 1.0
     beat = round(1 / (frequency[frequency > 0].min() * step)) if np.any(frequency > 0) else 1
@@ -181,7 +183,10 @@ def following_window(frames):
         half = np.maximum(half, np.abs(bodies - centre[row]).max(axis=0))
     travel = np.abs(centre[-1] - centre[0])
     margin = np.array([1.5, 0.8] if travel[0] >= travel[1] else [0.8, 1.5])
-    half += margin * float(np.nanmax(frames["body_length"]))
+    length = float(np.nanmax(frames["body_length"]))
+    half += margin * length
+    along = int(travel[1] > travel[0])
+    centre[:, along] -= 0.5 * length * np.sign(centre[-1, along] - centre[0, along])
     if frames.walls:
         _, _, y0, y1 = limits(frames, sample(frames), with_paths=False)
         centre[:, 1], half[1] = (y0 + y1) / 2, (y1 - y0) / 2
@@ -197,13 +202,22 @@ def choose_window(frames, follow):
     return *(close if follow else whole), follow
 
 
-def animate(frames, follow):
+def animate(frames, follow, with_axes):
     """The animation: a snapshot that goes from picture to picture."""
     window, size, follow = choose_window(frames, follow)
-    height = np.clip((WIDTH - 0.8) * size[1] / size[0] + 0.8, LEAST_HEIGHT, MOST_HEIGHT)
+    border = 0.8 if with_axes else 0
+    height = np.clip((WIDTH - border) * size[1] / size[0] + border, LEAST_HEIGHT, MOST_HEIGHT)
     figure, axes = pyplot.subplots(figsize=(WIDTH, height), layout="constrained")
     snapshot = Snapshot(axes, frames)
-    add_legend(axes, swim_handles()).set_in_layout(True)
+    if with_axes:
+        add_legend(axes, swim_handles())
+    else:
+        axes.tick_params(left=False, bottom=False, labelleft=False, labelbottom=False)
+        axes.set(xlabel="", ylabel="", position=(0, 0, 1, 1))
+        for words_or_path in (*snapshot.labels, *snapshot.paths):
+            words_or_path.set_visible(False)
+        for spine in axes.spines.values():
+            spine.set_visible(False)
     if follow:  # lines that stay in the water show the motion
         axes.grid(lw=0.4, color=GRID)
         axes.set_axisbelow(True)
@@ -214,7 +228,8 @@ def animate(frames, follow):
 
     last = frames.time.size - 1
     show(last)  # with the longest numbers, as a rule
-    figure.canvas.draw()
+    if with_axes:
+        figure.canvas.draw()
     figure.set_layout_engine("none")  # laid out once: it takes longer than drawing
     return animation.FuncAnimation(figure, show, frames=range(last + 1), init_func=lambda: None, blit=False), follow
 
@@ -232,6 +247,7 @@ def parse(arguments):
         action=argparse.BooleanOptionalAction,
         help="let the camera move with the school (default: where the fish would be tiny otherwise)",
     )
+    parser.add_argument("--no-axes", action="store_true", help="draw bodies and wakes only, up to the edges of the movie")
     options = parser.parse_intermixed_args(arguments)  # options and names in any order
     for name in ("fps", "rate", "dpi"):
         if not 0 < getattr(options, name) < 1e4:
@@ -247,7 +263,7 @@ def make_movie(options, movie):
         print(f"animate.py: warning: {1 / beats:.1f} rows per beat: shapes between rows are uncertain, reduce "
               "time.output_interval", file=sys.stderr)
     writer = choose_writer(movie, options.fps)
-    film, follow = animate(frames, options.follow)
+    film, follow = animate(frames, options.follow, not options.no_axes)
     film.save(movie, writer, dpi=options.dpi)
     n = frames.time.size
     return f"{n} picture{'s' * (n > 1)}, {options.fps:g} a second: {frames.how}" + ("; the camera follows the school" if follow else "")
