@@ -287,7 +287,7 @@ install: $(program) $(library) $(shared) $(manual) $(completion)  ## install pro
 	$(quiet)install -m 644 cases/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases'
 	$(quiet)install -m 644 cases/article/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/article'
 	$(quiet)install -m 644 cases/include/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/include'
-	$(quiet)install -m 644 cases/studies/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/studies'
+	$(quiet)install -m 644 cases/studies/*.yaml cases/studies/*.csv '$(DESTDIR)$(prefix)/share/shoal/cases/studies'
 	$(quiet)install -m 755 $(filter-out scripts/make-% scripts/verify.py scripts/measure.py scripts/documents.py scripts/figures.py scripts/drawings.py scripts/mutants.py scripts/article.py,$(wildcard scripts/*.py)) '$(DESTDIR)$(prefix)/share/shoal/scripts'
 	$(quiet)install -d '$(DESTDIR)$(python_modules)/shoal' '$(DESTDIR)$(prefix)/share/shoal/doc/'{examples,figures/gallery}
 	$(quiet)rm -f '$(DESTDIR)$(python_modules)/shoal.py'

@@ -101,9 +101,9 @@ CHAPTERS = [
          [CROWD, "plot.py school crowd.nc school.png"]),
     ]),
     ("A field", "`shoal field` computes the flow on a grid.", [
-        ("field", "Vorticity and streamlines.", [PAIR, "shoal field pair.nc --grid 240,120 -q -o field.nc", "plot.py field field.nc field.png"]),
-        ("field_speed", "The speed of the fluid.",
-         [PAIR, "shoal field pair.nc --grid 240,120 -q -o field.nc", "plot.py field field.nc --speed --no-streamlines -- field_speed.png"]),
+        ("field", "Vorticity.", [PAIR, "shoal field pair.nc --grid 240,120 -q -o field.nc", "plot.py field field.nc field.png"]),
+        ("field_speed", "The speed of the fluid, with streamlines.",
+         [PAIR, "shoal field pair.nc --grid 240,120 -q -o field.nc", "plot.py field field.nc --speed --streamlines -- field_speed.png"]),
     ]),
     ("A study", "`plot.py study STUDY.nc PICTURE` chooses the figure by the axes of the study ([studies.md](studies.md)).", [
         ("curves", "Any axis: speed, cost of transport and Strouhal number, a line per fish and value of the other axes.",
@@ -121,8 +121,9 @@ CHAPTERS = [
          ["shoal study levels.yaml -q -o levels", "plot.py study levels/study.nc refine.png"]),
         ("bars", "A refined axis and another axis: values with their error bars, and the errors in per cent.",
          ["shoal study bars.yaml -q -o bars", "plot.py study bars/study.nc bars.png"]),
-        ("budget", "The errors of a case: the part of each key, and the levels of each key.",
-         ["shoal error cases/foil_static.yaml --of steady_lift -q -o budget", "plot.py study budget/study.nc budget.png"]),
+        ("budget", "The errors of a case: the value with its error and with `--models` the range of other models, the part of each "
+         "key, and the levels of each key.",
+         ["shoal error cases/foil_static.yaml --of steady_lift --models -q -o budget", "plot.py study budget/study.nc budget.png"]),
         ("methods", "Integration methods as an axis of a comparison: error over cost.",
          ["shoal study cases/studies/methods.yaml -q -o methods", "plot.py study methods/study.nc methods.png"]),
     ]),
@@ -141,7 +142,9 @@ FIGURES = {
     "crowd": [CROWD, "plot.py swim crowd.nc --times 3 -- crowd.png"],
     "crowd_distances": [CROWD, "plot.py school crowd.nc crowd_distances.png"],
     **{f"steady_{axis}": [f"shoal study {STUDY}steady_{axis}.yaml -q -o {axis}", f"plot.py study {axis}/study.nc steady_{axis}.png"]
-       for axis in ("frequency", "amplitude", "resonance", "thrust")},
+       for axis in ("frequency", "amplitude", "thrust")},
+    "steady_resonance": [f"shoal study {STUDY}steady_resonance.yaml -q -o resonance",
+                         f"plot.py study resonance/study.nc --reference {STUDY}steady_resonance.csv -- steady_resonance.png"],
     "depth": [f"shoal study {STUDY}depth.yaml -q -o depth", "plot.py study depth/study.nc depth.png"],
     # one run at a time: its axis is time
     "stiffness": [f"shoal study {STUDY}stiffness.yaml -q -j 1 -o stiffness", "plot.py study stiffness/study.nc stiffness.png"],

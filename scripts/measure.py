@@ -775,12 +775,12 @@ def draw_real_time(path):
     rows = rows_of(lines.split("\n"))
     with pyplot.rc_context(STYLE):
         figure, axes = pyplot.subplots(figsize=(4.5, 3), layout="constrained")
-        for k, label in enumerate(("before, one thread", "one thread", "two threads"), start=1):
+        for i, (k, label) in enumerate(((-2, "CPU time, one thread"), (-1, "wall time, two threads"))):
             x, y = zip(*((int(row[0]), float(row[k])) for row in rows if row[k]))
-            axes.loglog(x, y, marker="os^"[k - 1], ms=4, color=LINES[k - 1], label=label)
+            axes.loglog(x, y, marker="os"[i], ms=4, color=LINES[i], label=label)
         axes.axhline(1, color="0.3", lw=0.8, ls=":")
         axes.annotate("real time", (1, 1), (0, 2), textcoords="offset points", size=7)
-        axes.set(xlabel="fish", ylabel="seconds per simulated second")
+        axes.set(xlabel="fish", ylabel="time per simulated time [s/s]")
         axes.set_xticks([int(row[0]) for row in rows], [row[0] for row in rows])
         axes.minorticks_off()
         axes.legend(fontsize=7)

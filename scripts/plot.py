@@ -9,7 +9,7 @@
     plot.py forces RUN.nc [PICTURE]    forces and powers by name over time, one column per fish
     plot.py pressure RUN.nc [PICTURE]  the jump of the pressure along the bodies over the last beat (force: pressure)
     plot.py school RUN.nc [PICTURE]    polarisation, distances to the nearest neighbour and contacts over time
-    plot.py field  FIELD.nc [PICTURE]  vorticity (--speed: speed) and streamlines, from a file of `shoal field`
+    plot.py field  FIELD.nc [PICTURE]  vorticity (--speed: speed; --streamlines), from a file of `shoal field`
 
 For a journal --style paper adds letters to the panels and makes the figure 170 mm wide, or --width 85.
 """
@@ -115,11 +115,13 @@ def parse(arguments):
     for kind, n in (("time", 0), ("forces", 4)):
         options[kind].add_argument("--beats", type=int, help=f"the last beats, 0: the whole run ({n})")
     options["field"].add_argument("--speed", action="store_true", help="draw the speed, not the vorticity")
-    options["field"].add_argument("--no-streamlines", action="store_true", help="draw no streamlines")
+    options["field"].add_argument("--streamlines", action="store_true", help="draw streamlines, too")
     options["study"].add_argument("--of", metavar="QUANTITY", help="of a map (speed), or the only one of curves and refined axes")
     options["study"].add_argument("--relative", action="store_true", help="a map over the values of the first fish, in per cent")
     options["study"].add_argument("--states", nargs="+", metavar="STEADY.nc",
                                   help="mark steady formations in a map over places: filled if stable, else open")
+    options["study"].add_argument("--reference", metavar="TABLE.csv",
+                                  help="other values over the same key, as dashed lines: a comment with their source, then columns")
     options["time"].add_argument(
         "--each", nargs="?", const="speed", metavar="VARIABLE", help="a panel per fish, of one variable (speed)"
     )

@@ -1,4 +1,4 @@
-"""Draw the file of `shoal field` on a figure: vorticity or speed, streamlines, bodies. Used by shoal.plot."""
+"""Draw the file of `shoal field` on a figure: vorticity or speed, bodies, and streamlines if asked for. Used by shoal.plot."""
 
 from ._plot_style import BODY, BODY_EDGE, Wall, colour_bar, matplotlib, with_unit
 from ._files import FileError, np, open_dataset, outline, walls
@@ -29,7 +29,7 @@ def end_of_scale(values):
     return max(float(np.nanquantile(np.abs(values), SPECIAL)), 1e-300)
 
 
-def draw(path, figure, with_speed=False, with_streamlines=True):
+def draw(path, figure, with_speed=False, with_streamlines=False):
     """Fill an empty figure."""
     field = Field(path)
     axes = figure.add_subplot()

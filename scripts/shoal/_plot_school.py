@@ -1,6 +1,6 @@
 """Draw polarisation, distances to the nearest neighbour and contacts of a school over time. Used by shoal.plot."""
 
-from ._plot_style import DASHES, GRID, LINES, MANY, calm, draw_bands, matplotlib
+from ._plot_style import DASHES, GRID, LINES, MANY, add_legend, calm, draw_bands, matplotlib
 from ._files import np
 
 
@@ -29,9 +29,7 @@ def draw_nearest(axes, results):
             for f, one in enumerate(distances.T)
         ]
     axes.set_ylabel("to the nearest\ncentre [m]")
-    axes.legend(
-        handles=handles, ncols=len(handles), loc="lower left", bbox_to_anchor=(0, 1), borderpad=0, columnspacing=1.5
-    )
+    add_legend(axes, handles)
 
 
 def draw(results, figure, scale_of_variable):

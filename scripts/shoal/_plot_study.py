@@ -16,9 +16,11 @@
 """
 
 import ast
+import csv
+import os
 
 from ._plot_style import (
-    DASHES, GRID, MARKS, calm, colour_bar, few_ticks, matplotlib, number_text, scale_of, unit_text, with_unit,
+    DASHES, GRID, MARKS, add_legend, calm, colour_bar, few_ticks, matplotlib, number_text, scale_of, unit_text, with_unit,
 )
 from ._files import FileError, Results, netCDF4, np
 from ._library import CaseError, netcdf_path
@@ -83,14 +85,11 @@ def style(i):
     }
 
 
-def legend_above(axes, figure, n_columns):
-    """A legend above a panel, as wide as it needs to be."""
-    n_rows = -(-len(axes.get_legend_handles_labels()[1]) // n_columns)
-    if n_rows == 0:
-        return
-    above = 1.12 if axes.get_title() else 1.01
-    axes.legend(loc="lower left", bbox_to_anchor=(0, above), ncol=n_columns).set_in_layout(False)
-    figure.get_layout_engine().set(rect=(0, 0, 1, 1 - 0.29 * n_rows / figure.get_figheight()))
+def legend_above(axes, n_columns, side="left"):
+    """A legend above a panel of the lines with a label, if there are any."""
+    handles, _ = axes.get_legend_handles_labels()
+    if handles:
+        add_legend(axes, handles, 14 if axes.get_title() else 0, min(n_columns, len(handles)), side)
 
 
 def case_of(study, member, refined):
@@ -203,18 +202,20 @@ def plot_convergence(study, refined, figure, asked=None):
             axes.set_title(names[f], size=9)
         axes.grid(lw=0.3, color=GRID)
     all_axes[0].set_ylabel("error of the level,\nover that of the coarsest")
-    legend_above(all_axes[0], figure, 2)
+    legend_above(all_axes[0], 2)
 
 
 def draw_bars(study, parameter, figure, quantities, lines_of):
     """Values with their errors over a parameter, and on the right the errors in per cent, since most bars are shorter than a
-    mark. lines_of(quantity): for each line the label, the values of the parameter, value, bar, and the places of flags."""
-    figure.set_figheight(1.2 + 1.4 * len(quantities))
+    mark. lines_of(quantity): for each line the label, the values of the parameter, value, bar, the places of flags, and the
+    lowest and highest values of other models, NaN where none was run."""
+    figure.set_figheight(1.4 + 1.4 * len(quantities))
     stack = figure.subplots(len(quantities), 2, sharex=True, squeeze=False, width_ratios=[3, 2])
     for (axes, right), quantity in zip(stack, quantities):
         lines = lines_of(quantity)
-        for i, (label, at, value, bar, doubtful) in enumerate(lines):
+        for i, (label, at, value, bar, doubtful, low, high) in enumerate(lines):
             line = style(i)
+            draw_models(axes, at, low, high, line["color"], with_label=i == 0)
             axes.errorbar(at, value, bar, label=label or None, capsize=3, elinewidth=0.8, **line)
             percent = 100 * bar / np.abs(value)
             right.plot(at, percent, **line)
@@ -227,10 +228,22 @@ def draw_bars(study, parameter, figure, quantities, lines_of):
         for panel in (axes, right):
             panel.grid(lw=0.3, color=GRID)
     stack[-1, 0].set_xscale(scale_of(study[parameter.name]))
-    for panel, note in zip(stack[-1], ("   (ring: flagged)", "")):
-        panel.set_xlabel(study.label(parameter.name) + note)
-    if len(lines) > 1:
-        legend_above(stack[0, 0], figure, 2)
+    for panel in stack[-1]:
+        panel.set_xlabel(study.label(parameter.name))
+    if any(len(doubtful) for *_, doubtful, _, _ in lines):
+        stack[0, 0].plot([], [], ls="", marker="o", ms=9, mfc="none", color="black", mew=0.8, label="flagged error")
+    legend_above(stack[0, 0], 2)
+
+
+def draw_models(axes, at, low, high, colour, with_label):
+    """The range of other models: a band where they were run at every point, else a bar at each point with them."""
+    known = np.isfinite(low) & np.isfinite(high)
+    words = "other models" if known.all() else f"other models, run at {known.sum()} of {known.size} points"
+    label = words if with_label and known.any() else None
+    if known.all() and known.size > 1:
+        axes.fill_between(at, low, high, color=colour, alpha=0.15, lw=0, zorder=0, label=label)
+    elif known.any():
+        axes.vlines(at[known], low[known], high[known], color=colour, alpha=0.25, lw=5, zorder=0, label=label)
 
 
 def plot_values(study, refined, parameter, figure, asked=None):
@@ -258,7 +271,8 @@ def plot_values(study, refined, parameter, figure, asked=None):
                 of = [members[g] for g in rows]
                 doubtful = [k for k, g in enumerate(rows) if str(flagged[g][f]).strip("\0")]
                 label = ", ".join(filter(None, [word, name if len(names) > 1 else ""]))
-                lines.append((label, x[of], study[quantity][of, f], study[f"error_{quantity}"][rows, f], doubtful))
+                none = np.full(len(of), np.nan)  # a refined axis has no other models
+                lines.append((label, x[of], study[quantity][of, f], study[f"error_{quantity}"][rows, f], doubtful, none, none))
         return lines
 
     draw_bars(study, parameter, figure, known, lines_of)
@@ -281,7 +295,7 @@ def plot_points(study, figure, asked=None):
         raise FileError(f"{study.path}: no errors to draw: too few levels are complete")
 
     def lines_of(quantity):
-        value, bar, part = (study[f"{kind}_{quantity}"] for kind in ("stated", "bar", "part"))
+        value, bar, part, low, high = (study[f"{kind}_{quantity}"] for kind in ("stated", "bar", "part", "lowest", "highest"))
         flags, lines = study.data[f"key_flag_{quantity}"][:], []
         for word in dict.fromkeys(words):
             for f, name in enumerate(names):
@@ -293,68 +307,82 @@ def plot_points(study, figure, asked=None):
                     if any(str(flags[p][k][f]).strip("\0") and part[p, k, f] > 0.1 * bar[p, f] for k in range(part.shape[1]))
                 ]
                 label = ", ".join(filter(None, [word, name if len(names) > 1 else ""]))
-                lines.append((label, x[rows], value[rows, f], bar[rows, f], doubtful))
+                lines.append((label, x[rows], value[rows, f], bar[rows, f], doubtful, low[rows, f], high[rows, f]))
         return lines
 
     draw_bars(study, parameter, figure, known, lines_of)
 
 
 def plot_budget(study, figure):
-    """The errors of a case. For each quantity: on the left what each key has in the sum; on the right the error at each
-    level of each key: the difference from its finest level, and on top the error of that."""
+    """The errors of a case, a row per quantity: the value with its error and the range of other models; the part of each key
+    in the error; and what the levels of each key differ by."""
     asked = [name[len("bar_") :] for name in study.data.variables if name.startswith("bar_")]
     keys = [k for k in range(study["key_levels"].size) if not study["key_is_choice"][k] and study["key_levels"][k] > 1]
-    names = [str(study.data["key_name"][k]).strip("\0").split(".")[-1].split("_")[-1] for k in keys]
-    names = [{"points": "sheet points"}.get(name, name) for name in names]
+    names = [str(study.data["key_name"][k]).strip("\0").split(".")[-1].replace("_", " ") for k in keys]
     fish = 0  # the others look alike, and are in error.csv
-    figure.set_figheight(0.6 + 2.3 * len(asked))
-    panels = figure.subplots(len(asked), 2, width_ratios=[1, 4], squeeze=False)
-    for (left, right), quantity in zip(panels, asked):
+    figure.set_figheight(0.6 + 4 * len(asked))
+    grid = figure.add_gridspec(2 * len(asked), 2, width_ratios=[1, 3])
+    for row, quantity in enumerate(asked):
+        left, middle = (figure.add_subplot(grid[2 * row, column]) for column in range(2))
+        right = figure.add_subplot(grid[2 * row + 1, :])
         value, bar = study[f"stated_{quantity}"][fish], study[f"bar_{quantity}"][fish]
-        part = study[f"part_{quantity}"][:, fish]
         if not np.isfinite(bar):
             raise FileError(f"{study.path}: the error of {quantity} is unknown")
-        percent = 100 / abs(value)
-        bottom = 0
-        for i, k in enumerate(keys):
-            is_flagged = bool(str(study.data[f"key_flag_{quantity}"][k, fish]).strip("\0"))
-            left.bar(0, part[k] * percent, bottom=bottom, color=COLOURS[(i + 1) % 8], width=0.6, hatch="//" if is_flagged else None,
-                     edgecolor="white", lw=0)
-            if part[k] > 0.06 * bar:
-                left.annotate(names[i], (0, (bottom + part[k] * percent / 2)), ha="center", va="center", size=7,
-                              bbox={"fc": "white", "ec": "none", "pad": 0.6, "alpha": 0.85})
-            bottom += part[k] * percent
-        left.set_xticks([])
-        left.set_xlim(-0.5, 0.5)
-        left.set_ylabel(f"error of {NAMES.get(quantity, quantity.replace('_', ' '))}\n[% of the value]")
-        ticks, floor = [], []
-        at, all_values = 0.0, study[quantity]
-        for i, k in enumerate(keys):
-            n, stated = int(study["key_levels"][k]), int(study["key_stated"][k])
-            members = study["key_member"][k, :n].astype(int)
-            values = all_values[members, fish]
-            differences = np.abs(values - values[0]) * percent
-            of_finest = max(part[k] * percent - differences[stated], 0)
-            is_flagged = bool(str(study.data[f"key_flag_{quantity}"][k, fish]).strip("\0"))
-            for level in reversed(range(n)):
-                mark = {"edgecolor": "black", "lw": 1} if level == stated else {"edgecolor": "white", "lw": 0}
-                right.bar(at, differences[level] + of_finest, color=COLOURS[(i + 1) % 8], alpha=0.35, width=0.8,
-                          hatch="//" if is_flagged else None, **mark)
-                right.bar(at, differences[level], color=COLOURS[(i + 1) % 8], width=0.8, hatch="//" if is_flagged else None, **mark)
-                ticks.append((at, f"{study['key_value'][k, level]:.3g}"))
-                floor.append(differences[level] + of_finest)
-                at += 1
-            right.annotate(names[i], (at - n / 2 - 0.5, 1.01), xycoords=("data", "axes fraction"), ha="center", size=8)
-            at += 0.8
-        right.set_xticks([x for x, _ in ticks], [text for _, text in ticks], rotation=60, size=7)
-        floor = [x for x in floor if x > 0]
-        right.set_yscale("log")
-        right.set_ylim(max(min(floor), max(floor) * 1e-5) / 2, max(floor) * 2)
-        right.grid(axis="y", lw=0.3, color=GRID)
-    panels[-1][1].set_xlabel(
-        "levels of each key (framed: of the stated value)\n"
-        "dark: difference from the finest level; light: error of that level; hatched: flagged", size=8
-    )
+        draw_range(left, value, bar, study[f"lowest_{quantity}"][fish], study[f"highest_{quantity}"][fish])
+        left.set_ylabel(study.label(quantity).replace(" [", "\n["))
+        part = 100 / abs(value) * study[f"part_{quantity}"][keys, fish]
+        is_flagged = [bool(str(study.data[f"key_flag_{quantity}"][k, fish]).strip("\0")) for k in keys]
+        for i in range(len(keys)):
+            middle.barh(-i, part[i], color=COLOURS[(i + 1) % 8], hatch="//" if is_flagged[i] else None, edgecolor="white", lw=0)
+        middle.set_yticks(-np.arange(len(keys)), names, size=7)
+        middle.set_xlim(0, None)
+        middle.set_xlabel("part of the error [% of the value]" + (", hatched: flagged" if any(is_flagged) else ""))
+        draw_levels(right, study, quantity, keys, part, fish)
+        right.set_xlabel("levels of each key")
+        legend_above(right, 3)
+
+
+def draw_range(axes, value, bar, low, high):
+    """A value with its error, and beside it the range of other models."""
+    axes.errorbar([0], [value], [bar], color="black", marker="o", ms=4.5, capsize=3, elinewidth=0.8)
+    ticks, words = [0], ["error"]
+    if np.isfinite([low, high]).all():
+        axes.vlines([1], low, high, color="black", alpha=0.25, lw=7)
+        ticks, words = [0, 1], ["error", "other\nmodels"]
+    axes.set_xticks(ticks, words, size=7)
+    axes.set_xlim(-0.6, len(ticks) - 0.4)
+    axes.ticklabel_format(axis="y", useOffset=False)
+    axes.grid(axis="y", lw=0.3, color=GRID)
+
+
+def draw_levels(axes, study, quantity, keys, part, fish):
+    """What each level of each key differs by from the finest one, and the error of the level: that and the error of the
+    finest. Marks on a logarithmic axis, one group per key; part: of the keys, in per cent of the stated value."""
+    percent = 100 / abs(study[f"stated_{quantity}"][fish])
+    ticks, drawn, at = [], [], 0.0
+    for i, k in enumerate(keys):
+        n, stated = int(study["key_levels"][k]), int(study["key_stated"][k])
+        values = study[quantity][study["key_member"][k, :n].astype(int), fish]
+        differences = np.abs(values - values[0]) * percent
+        errors = differences + max(part[i] - differences[stated], 0)
+        differences, errors = (np.where(some > 0, some, np.nan) for some in (differences, errors))  # the axis has no 0
+        x, colour = at + np.arange(n)[::-1], COLOURS[(i + 1) % 8]
+        axes.plot(x[1:], differences[1:], ls="", marker="_", ms=9, mew=2, color=colour, label="difference from the finest level" if i == 0 else None)
+        axes.plot(x, errors, ls="-", lw=0.6, marker="o", ms=4.5, mfc="white", color=colour, label="error of the level" if i == 0 else None)
+        axes.plot(x[stated], errors[stated], ls="", marker="s", ms=10, mfc="none", mec="black", mew=0.8,
+                  label="stated value" if i == 0 else None)
+        ticks += zip(x, (f"{study['key_value'][k, level]:.3g}" for level in range(n)))
+        drawn += [*differences[1:], *errors]
+        if i > 0:
+            axes.axvline(at - 0.9, color=GRID, lw=0.6)
+        at += n + 0.8
+    axes.set_xticks([x for x, _ in ticks], [text for _, text in ticks], rotation=60, size=7)
+    known = [y for y in drawn if np.isfinite(y)]
+    if known:
+        axes.set_yscale("log")
+        axes.set_ylim(max(min(known), max(known) * 1e-5) / 2, max(known) * 2)
+    axes.set_ylabel("[% of the value]")
+    axes.grid(axis="y", lw=0.3, color=GRID)
 
 
 ACCURATE, SAME_WORK = 1e-4, 1e-3  # errors at which methods are compared: of nose and tail [m], and relative of the work
@@ -419,7 +447,7 @@ def plot_methods(study, over, figure):
         axes.set_ylabel(label)
         few_ticks(axes.yaxis)
         axes.grid(which="major", lw=0.3, color=GRID)
-    legend_above(panels[0], figure, 5)
+    legend_above(panels[0], 5)
 
 
 def digits_for(values):
@@ -429,6 +457,7 @@ def digits_for(values):
 
 
 CONTOURS = 6  # so many values on both axes of a map are drawn as contours, fewer as cells
+SPECIAL = 0.98  # part of the places of a map that its colours tell apart
 SAME = 1e-6  # relative range of values of members that is noise of the solver
 
 
@@ -509,9 +538,9 @@ def plot_map(study, x, y, labels, quantity, figure):
             drawn = draw_cells(axes, grid, values[:, f], digits, norm, scales)
         else:
             drawn = axes.scatter(x, y, c=values[:, f], norm=norm, cmap="cividis", s=20)
-        axes.set_xlabel(labels[0])
         if len(names) > 1:
             axes.set_title(names[f], size=9)
+    figure.supxlabel(labels[0], size=9)
     all_axes[0].set_ylabel(labels[1])
     if is_same:
         all_axes[0].annotate(f"{quantity.replace('_', ' ')} is constant: {known.mean():.6g}", (0, 1), (0, 14), size=8,
@@ -528,15 +557,23 @@ def plot_relative(study, x, y, labels, quantity, figure):
         raise CaseError("--relative: compares with the first fish, and there is one fish")
     x, y = x[study.complete], y[study.complete]
     values = 100 * (values / values[:, :1] - 1)
-    most = np.nanmax(np.abs(values[:, 1:]))
+    known = np.abs(values[:, 1:][np.isfinite(values[:, 1:])])
+    most = np.quantile(known, SPECIAL)  # one extreme place would make all others pale
+    grid = grid_of(x, y)
     colours = "RdBu_r" if any(word in quantity for word in ("cost", "power")) else "RdBu"
     norm = matplotlib.colors.Normalize(-most, most)
     all_axes = figure.subplots(len(names) - 1, 1, squeeze=False, sharex=True, sharey=True)[:, 0]
     for f, axes in enumerate(all_axes, start=1):
-        here = np.isfinite(values[:, f])
-        axes.tricontourf(x[here], y[here], values[here, f], np.linspace(-most, most, 22), cmap=colours, norm=norm)
-        axes.tricontour(x[here], y[here], values[here, f], [0], colors="black", linewidths=1)
-        axes.plot(x, y, ls="", marker=".", ms=2, color="black")
+        here, levels = np.isfinite(values[:, f]), np.linspace(-most, most, 22)
+        if grid:  # places that are left out stay white
+            table = np.ma.masked_all((grid[1].size, grid[0].size))
+            table[grid[3][here], grid[2][here]] = values[here, f]
+            axes.contourf(grid[0], grid[1], table, levels, cmap=colours, norm=norm, extend="both")
+            axes.contour(grid[0], grid[1], table, [0], colors="black", linewidths=1)
+        else:
+            axes.tricontourf(x[here], y[here], values[here, f], levels, cmap=colours, norm=norm, extend="both")
+            axes.tricontour(x[here], y[here], values[here, f], [0], colors="black", linewidths=1)
+        axes.plot(x, y, ls="", marker=".", ms=1.5, color="black")
         axes.set(aspect="equal", ylabel=labels[1], title=names[f])
     all_axes[-1].set_xlabel(labels[0])
     words = study.label(quantity).split(" [")[0]
@@ -585,9 +622,25 @@ def panels_of(study, first):
     return ["speed", "cost_of_transport", "efficiency" if is_driven and is_known(study, "efficiency") else "strouhal"]
 
 
-def plot_lines(study, figure, asked=None, x=None, label=None):
+def reference_of(path, key):
+    """A table of other values over a key: their source, the values of the key, and the columns by quantity."""
+    if not os.path.exists(path):
+        raise FileError(f"{path}: no such file")
+    with open(path, encoding="utf-8") as file:
+        lines = file.read().splitlines()
+    if not lines or not lines[0].startswith("#"):
+        raise FileError(f"{path}: the first line has to be a comment with the source of the values: # linear theory")
+    rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    try:
+        columns = {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+        return lines[0].lstrip("# "), columns.pop(key), columns
+    except (IndexError, KeyError, TypeError, ValueError) as error:
+        raise FileError(f"{path}: a table of numbers with a column {key} is needed") from error
+
+
+def plot_lines(study, figure, asked=None, x=None, label=None, reference=None):
     """Three quantities, or the one that is asked for, over the first axis, or over x with a label; a line per fish and per
-    value of the rest."""
+    value of the rest, and the values of a reference."""
     first = study.axes[0][0]
     is_number = x is not None or study.is_number(first.name)
     if x is None:
@@ -595,6 +648,7 @@ def plot_lines(study, figure, asked=None, x=None, label=None):
     rest = [[case_of(study, m, first)] if study.axes[1:] else [] for m in range(x.size)]
     names = list(study["fish"])
     quantities = [asked] if asked else panels_of(study, first)
+    source, other_x, others = reference_of(reference, first.long_name) if reference else (None, None, {})
     figure.set_figheight(1.2 + 1.2 * len(quantities))
     stack = figure.subplots(len(quantities), 1, sharex=True, squeeze=False)[:, 0]
     for axes, quantity in zip(stack, quantities):
@@ -604,18 +658,24 @@ def plot_lines(study, figure, asked=None, x=None, label=None):
             rows = np.array([tuple(r) == words for r in rest]) & study.complete
             for f, name in enumerate(names):
                 who = ", ".join([*words, *([name] if len(names) > 1 else [])])
-                axes.plot(x[rows], value[rows, f], label=who or None, **style(i))
+                axes.plot(x[rows], value[rows, f], label=who or ("this program" if reference else None), **style(i))
                 i += 1
+        if quantity in others:
+            axes.plot(other_x, others[quantity], color="#888888", ls="--", lw=1.2, zorder=1)
         axes.set_yscale(scale_of(value[study.complete]))
         calm([axes], rounding=SAME)
+        if quantity == "efficiency" and np.nanmin(value[study.complete]) < 0 < np.nanmax(value[study.complete]):
+            axes.set_ylim(0, None)  # a body that brakes has none
         axes.set_ylabel(title.replace(" [", "\n["))
         axes.grid(lw=0.3, color=GRID)
     stack[-1].set_xscale(scale_of(x) if is_number else "linear")
     if not is_number:
         stack[-1].set_xticks(x, study[first.name])
     stack[-1].set_xlabel(label or study.label(first.name))
-    if i > 1:
-        legend_above(stack[0], figure, 2)
+    if reference:
+        stack[0].plot([], [], color="#888888", ls="--", lw=1.2, label=source)
+    if i > 1 or reference:
+        legend_above(stack[0], 2)
 
 
 def plot_comparison(study, figure):
@@ -659,7 +719,7 @@ def plot_comparison(study, figure):
                 size=7,
                 color="#666666",
             )
-    legend_above(panels[0], figure, 6 if not failed else 2)
+    legend_above(panels[0], 6 if not failed else 2)
 
 
 PLACE = ["x of the nose at the start [m]", "y of the nose at the start [m]"]
@@ -697,14 +757,16 @@ def own_words(study):
     return "an error budget" if "key_name" in study.data.variables else "a comparison of methods"
 
 
-def draw(path, figure, asked=None, relative=False, states=()):
+def draw(path, figure, asked=None, relative=False, states=(), reference=None):
     """Draw what a file calls for on an empty figure; asked: the quantity of a map, or of lines over an axis; relative: a map
-    over the first fish; states: files of steady formations to mark in it."""
+    over the first fish; states: files of steady formations to mark in it; reference: a table of other values, for lines."""
     study, quantity = Study(path), asked or "speed"
     drawn = study.data.variables.get(quantity)
     if drawn is None or drawn.dimensions[1:] != ("fish",) or not study.is_number(quantity):
         raise FileError(f"{path}: {quantity} is not a quantity of the fish in it, such as speed or cost_of_transport")
     over = map_axes(study)
+    if reference and (over or study.is_comparison or not study.axes or any(hasattr(v, "refine") for axis in study.axes for v in axis)):
+        raise CaseError(f"--reference: only lines over a swept key take it, and {path} is not drawn so")
     if relative and not over:
         raise CaseError(f"--relative: only maps take it, and {path} has no two axes of numbers or places")
     if states and not (over and over[2] is PLACE):
@@ -739,4 +801,4 @@ def draw(path, figure, asked=None, relative=False, states=()):
     if is_place(keys):
         x, y = places(study, keys[0])
         return plot_lines(study, figure, asked, *((x, PLACE[0]) if np.ptp(x) >= np.ptp(y) else (y, PLACE[1])))
-    return plot_lines(study, figure, asked)
+    return plot_lines(study, figure, asked, reference=reference)

@@ -9,7 +9,7 @@ try:
     import matplotlib
     import numpy as np
     from matplotlib import colorbar, ticker
-    from matplotlib.transforms import Bbox
+    from matplotlib.transforms import Bbox, ScaledTranslation
 except ImportError as missing:
     raise ImportError(f"{missing}: apt install python3-matplotlib, and run this with /usr/bin/python3") from missing
 
@@ -161,10 +161,86 @@ def colour_bar(figure, mappable, panels, label, **options):
     return bar
 
 
+# ---- legends and labels that fit
+
+
+def add_legend(axes, handles, above=0, n_columns=None, side="left"):
+    """A legend some points above a panel, flush with its side, as wide as it needs to be; fit() narrows it where the figure is
+    too narrow. Returns it."""
+    place = axes.transAxes + ScaledTranslation(0, above / 72, axes.figure.dpi_scale_trans)
+    legend = axes.legend(
+        handles=handles, loc=f"lower {side}", bbox_to_anchor=(0 if side == "left" else 1, 1), bbox_transform=place,
+        ncol=n_columns or len(handles), borderpad=0, borderaxespad=0.4, columnspacing=1.5,
+    )
+    # the layout would make the panel as wide as the legend: what it takes into account is a text of its height
+    legend.set_in_layout(False)
+    legend.room = axes.annotate("", (0, 1), (0, above), "axes fraction", "offset points", va="bottom", alpha=0)
+    legend.above, legend.side = above, side
+    reserve(legend)
+    return legend
+
+
+def reserve(legend):
+    """Keep as much room above the panel as the legend is high."""
+    n_rows = -(-len(legend.get_texts()) // legend._ncols)
+    legend.room.set(text="\n".join("|" * n_rows), size=1.15 * legend.get_texts()[0].get_size())
+
+
+def narrowed(legend, n_columns, shift=0.0):
+    """The legend anew with another number of columns, moved to the left by some pixels."""
+    axes, above, side, room = legend.axes, legend.above, legend.side, legend.room
+    size = legend.get_texts()[0].get_size()
+    place = axes.transAxes + ScaledTranslation(-shift / axes.figure.dpi, above / 72, axes.figure.dpi_scale_trans)
+    legend = axes.legend(
+        legend.legendHandles, [text.get_text() for text in legend.get_texts()], loc=f"lower {side}", bbox_transform=place,
+        bbox_to_anchor=(0 if side == "left" else 1, 1), ncol=n_columns, borderpad=0, borderaxespad=0.4, columnspacing=1.5, fontsize=size,
+    )
+    legend.set_in_layout(False)
+    legend.above, legend.side, legend.room = above, side, room
+    reserve(legend)
+    return legend
+
+
+def fit_legends(figure):
+    """Give each legend above a panel as many columns as the figure has room for, and move it into the figure."""
+    width = figure.bbox.width
+    for axes in figure.axes:
+        legend = axes.get_legend()
+        if not hasattr(legend, "room"):
+            continue
+        box = legend.get_window_extent()
+        while legend._ncols > 1 and box.width > width:
+            legend = narrowed(legend, legend._ncols - 1)
+            box = legend.get_window_extent()
+        beyond = max(box.x1 - width, 0) if legend.side == "left" else min(box.x0, 0)
+        if abs(beyond) > 1:
+            narrowed(legend, legend._ncols, min(beyond, box.x0))
+
+
+def fit_labels(figure):
+    """Break the label of an axis that is longer than the panel; the layout lets it be cut."""
+    for axes in figure.axes:
+        for label, is_long in ((axes.yaxis.label, lambda box, panel: box.height > panel.height), (axes.xaxis.label, lambda box, panel: box.width > 1.3 * panel.width)):
+            words = label.get_text().split(" ")
+            if axes.get_visible() and "\n" not in label.get_text() and len(words) > 1 and is_long(label.get_window_extent(), axes.get_window_extent()):
+                at = min(range(1, len(words)), key=lambda i: abs(len(" ".join(words[:i])) - len(" ".join(words[i:]))))
+                label.set_text(" ".join(words[:at]) + "\n" + " ".join(words[at:]))
+
+
+def fit(figure):
+    """Let legends and labels fit a figure of its size."""
+    for _ in range(2):  # panels move as legends and labels change
+        figure.draw_without_rendering()
+        fit_labels(figure)
+        fit_legends(figure)
+    return figure
+
+
 # ---- figures of a paper
 
 MILLIMETRES = 25.4  # of an inch
-NARROW = 120  # below this width text is smaller, and a legend has two columns [mm]
+NARROW = 120  # below this width text is smaller [mm]
+LETTER = 12  # room above a panel for its letter [points]
 
 
 def paper(figure, width=170):
@@ -179,14 +255,14 @@ def paper(figure, width=170):
     figure.set_size_inches(target, height * max(target / was, 0.8))
     for text in figure.findobj(matplotlib.text.Text) if width < NARROW else []:
         text.set_size(0.8 * text.get_size())
-    for axes in shown if width < NARROW else []:  # a legend in one row is too long
-        legend = axes.get_legend()
-        if legend and len(legend.get_texts()) > 1:
-            axes.legend(legend.legendHandles, [text.get_text() for text in legend.get_texts()], loc="lower left", ncol=2,
-                        bbox_to_anchor=(0, 1.02), borderpad=0, columnspacing=1, fontsize=6)
-            axes.set_title(axes.get_title(), pad=8 * -(-len(legend.get_texts()) // 2) + 4)
+    for legend in (axes.get_legend() for axes in shown if len(shown) > 1):
+        if hasattr(legend, "room"):
+            legend.above = max(legend.above, LETTER)
+            legend.room.set_position((0, legend.above))
+            narrowed(legend, legend._ncols)
+    fit(figure)
     for _ in range(3):  # the layout changes with the size
-        figure.canvas.draw()
+        figure.draw_without_rendering()
         legends = [axes.get_legend() for axes in shown if axes.get_legend()]
         box = figure.get_tightbbox(bbox_extra_artists=[*figure.get_default_bbox_extra_artists(), *legends])
         missing = target - box.width - 2 * STYLE["savefig.pad_inches"]

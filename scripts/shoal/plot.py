@@ -22,14 +22,13 @@ from . import _plot_study as plot_study_module
 from ._files import Results, kind_of
 from ._library import CaseError, FileError, kind as kind_of_value
 from ._plot_style import (
-    BLUE, BODY, BODY_EDGE, DASHES, GRID, LINES, MANY, PATH, PHASES, RED, STYLE, WIDTH, Wall, calm, colour_bar, draw_bands,
-    matplotlib, paper, unit_text, with_unit,
+    BLUE, BODY, BODY_EDGE, DASHES, GRID, LINES, MANY, PATH, PHASES, RED, STYLE, WIDTH, Wall, add_legend, calm, colour_bar,
+    draw_bands, fit, matplotlib, paper, unit_text, with_unit,
 )
 
 from matplotlib import pyplot
 from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
-from matplotlib.transforms import ScaledTranslation
 
 __all__ = ["swim", "gait", "time", "forces", "pressure", "school", "field", "study", "paper", "STYLE"]
 
@@ -119,17 +118,6 @@ def limits(results, rows, with_paths=True, margin=0.4):
     return x0 - margin, x1 + margin, min(heights) - margin, max(heights) + margin
 
 
-def add_legend(axes, handles, above=0):
-    """What colours and lines mean, in one row some points above a panel; returns the legend."""
-    place = axes.transAxes + ScaledTranslation(0, above / 72, axes.figure.dpi_scale_trans)
-    legend = axes.legend(
-        handles=handles, loc="lower left", bbox_to_anchor=(0, 1), bbox_transform=place, ncol=len(handles), borderpad=0,
-        columnspacing=1.5,
-    )
-    legend.set_in_layout(False)  # it may be wider than its panel
-    return legend
-
-
 def swim_handles():
     """What is drawn in a snapshot, for its legend."""
     dot = {"ls": "", "marker": "o", "ms": 4, "mew": 0}
@@ -172,22 +160,6 @@ def label_panels(all_axes, n_columns, x, y):
         axes.set_xlabel(x)
     middle = all_axes[(n_rows - 1) // 2 * n_columns]  # of an even number of rows at its foot
     middle.set_ylabel(y, **({} if n_rows % 2 else {"y": -0.15, "ha": "center"}))
-
-
-def place_clock(snapshot, row, window):
-    """Move the time to the corner of the window that is furthest from bodies and wake."""
-    results = snapshot.results
-    drawn = np.concatenate([results.wake(row)[0], *(results.outline(row, f) for f in range(results.n_fish))])
-    drawn = snapshot.place(drawn, row)
-    x0, x1, y0, y1 = window
-    corners = {("right", "top"): (x1, y1), ("left", "top"): (x0, y1), ("right", "bottom"): (x1, y0)}
-    corners["left", "bottom"] = x0, y0
-    free = {corner: np.min(np.hypot(*(drawn - at).T)) for corner, at in corners.items()}
-    wanted = 0.2 * (x1 - x0)  # the first corner that is free enough, else the freest
-    horizontal, vertical = next((c for c in corners if free[c] > wanted), max(free, key=free.get))
-    snapshot.clock.set(ha=horizontal, va=vertical)
-    snapshot.clock.xy = (float(horizontal == "right"), float(vertical == "top"))
-    snapshot.clock.set_position((-5 if horizontal == "right" else 5, -5 if vertical == "top" else 5))
 
 
 def following_limits(results, rows):
@@ -233,10 +205,10 @@ def plot_swim(results, options):
     for axes, row in zip(all_axes, rows):
         snapshot = Snapshot(axes, results, unit=unit)
         snapshot.show(row)
-        place_clock(snapshot, row, window)
+        snapshot.clock.set(position=(0, 2), va="bottom", size=8)  # above the panel, where nothing swims
         axes.axis(window)
         axes.label_outer()
-    add_legend(all_axes[0], swim_handles())
+    add_legend(all_axes[0], swim_handles(), above=12)
     return figure
 
 
@@ -447,6 +419,16 @@ def draw_desired(axes, time, values):
     return [Line2D([], [], color="#888888", lw=0.8, label=label)]
 
 
+def over_work(results, balance, of):
+    """The energy balance in per cent of the work of muscle and drive on each body until the end, with its label and unit; in
+    joule where a body takes none."""
+    driven = np.trapz(np.nan_to_num(results["constraint_power"][:, of]), results.time, axis=0)
+    work = np.abs(results["actuation_work"][-1, of]) + np.abs(driven)
+    if np.all(work > 0):
+        return 100 * balance / work, "energy balance / work", "%"
+    return balance, "energy balance", "J"
+
+
 def plot_time(results, options):
     """Speed, heading, power and forces over time in stacked panels, one line per fish."""
     if options.each:
@@ -460,14 +442,17 @@ def plot_time(results, options):
     figure, stack = pyplot.subplots(
         len(rows), 1, sharex=True, layout="constrained", figsize=(WIDTH, 0.5 + 1.5 * len(rows))
     )
-    figure.get_layout_engine().set(h_pad=0.1)  # room for a legend above a panel
     forces, heading = [], unwrapped(results["heading"][drawn][:, of])
     for axes, (variable, label) in zip(stack, rows):
+        unit = results.data.variables[variable].units
         if variable == "thrust" and len(of) == 1:
             forces = draw_forces(axes, results, of[0], drawn)
         else:
-            fish = draw_lines(axes, time, heading if variable == "heading" else results[variable][drawn][:, of], labels)
-        axes.set_ylabel(with_unit(label, results.data.variables[variable].units))
+            values = heading if variable == "heading" else results[variable][drawn][:, of]
+            if variable == "energy_balance":
+                values, label, unit = over_work(results, values, of)
+            fish = draw_lines(axes, time, values, labels)
+        axes.set_ylabel(with_unit(label, unit))
         axes.grid(lw=0.3, color=GRID)
         axes.margins(x=0)
     asked = draw_desired(stack[1], time, desired(results, drawn, of, heading))
@@ -475,7 +460,8 @@ def plot_time(results, options):
         calm([axes], natural_scale(results, variable))
     stack[-1].set_xlabel("time [s]")
     figure.align_ylabels(stack)
-    add_legend(stack[0], [*(fish if len(of) > 1 else []), *asked])
+    if len(of) > 1 or asked:
+        add_legend(stack[0], [*(fish if len(of) > 1 else []), *asked])
     if forces:
         add_legend(stack[-1], forces)
     return figure
@@ -506,7 +492,6 @@ def plot_forces(results, options):
     figure, grid = pyplot.subplots(
         3, len(of), squeeze=False, sharex=True, sharey="row", layout="constrained", figsize=(WIDTH, 6)
     )
-    figure.get_layout_engine().set(h_pad=0.13)  # room for a legend above a panel
     lines = {}  # the same line for the same name in all columns
     colour = {name: LINES[i % len(LINES)] for table in (FORCES, POWERS) for i, name in enumerate(table)}
     for fish, column in zip(of, grid.T):
@@ -518,7 +503,7 @@ def plot_forces(results, options):
                 lines[name] = axes.plot(time, along, color=colour[name], lw=0.9, ls=FORCES[name])[0]
         for name, power in present(results, POWERS, rows, fish).items():
             lines[name] = column[2].plot(time, power, color=colour[name], lw=0.9, ls=POWERS[name])[0]
-        column[0].set_title(names(results)[fish], size=9, pad=18)  # above the legend
+        column[0].set_title(names(results)[fish], size=9)
         column[2].set_xlabel("time [s]")
     for axes, label in zip(grid[:, 0], labels):
         axes.set_ylabel(label)
@@ -528,12 +513,13 @@ def plot_forces(results, options):
     for panels_of_row, variable in zip(grid, ("thrust", "thrust", "actuation_power")):
         calm(panels_of_row, natural_scale(results, variable))
     figure.align_ylabels(grid[:, 0])
+    above = 14 if len(of) > 1 else 0  # the titles
     for row, table in ((0, FORCES), (2, POWERS)):
         handles = [lines[name] for name in table if name in lines]
         for handle, name in zip(handles, (name for name in table if name in lines)):
             handle.set_label(name.removesuffix("_force").removesuffix("_power").replace("_", " "))
         if handles:
-            add_legend(grid[row, 0], handles)
+            add_legend(grid[row, 0], handles, above if row == 0 else 0)
     return figure
 
 
@@ -567,9 +553,9 @@ def plot_pressure(results, options):
 
 
 def plot_field(path, options):
-    """Vorticity or speed on the grid of a field, streamlines and bodies."""
+    """Vorticity or speed on the grid of a field, with bodies and, if asked for, streamlines."""
     figure = pyplot.figure(figsize=(WIDTH, 4.2), layout="constrained")
-    plot_field_module.draw(path, figure, options.speed, not options.no_streamlines)
+    plot_field_module.draw(path, figure, options.speed, options.streamlines)
     return figure
 
 
@@ -578,7 +564,6 @@ def plot_school(results, options):
     if results.n_fish < 2:
         raise FileError(f"{options.results}: one fish is no school")
     figure = pyplot.figure(figsize=(WIDTH, 6), layout="constrained")
-    figure.get_layout_engine().set(h_pad=0.1)  # room for a legend above a panel
     plot_school_module.draw(results, figure, lambda name: natural_scale(results, name))
     return figure
 
@@ -586,7 +571,7 @@ def plot_school(results, options):
 def plot_study(path, options):
     """Errors, costs or maps of a study.nc, or of a comparison of methods."""
     figure = pyplot.figure(figsize=(WIDTH, 3.4), layout="constrained")
-    plot_study_module.draw(path, figure, options.of, options.relative, options.states or ())
+    plot_study_module.draw(path, figure, options.of, options.relative, options.states or (), options.reference)
     return figure
 
 
@@ -608,7 +593,7 @@ def figure_of(picture, path, options):
     """The figure of a kind of picture; options: a namespace with all options of that kind."""
     check_kind(picture, path)
     source = path if picture in OWN_FILES else Results(path)
-    return globals()[f"plot_{picture}"](source, options)
+    return fit(globals()[f"plot_{picture}"](source, options))
 
 
 def path_of(source):
@@ -660,13 +645,14 @@ def school(source):
     return _axes("school", source)
 
 
-def field(source, speed: bool = False, streamlines: bool = True):
-    """Vorticity, s-1, or speed, m s-1, and streamlines, from a file of `shoal field`."""
-    return _axes("field", source, speed=speed, no_streamlines=not streamlines)
+def field(source, speed: bool = False, streamlines: bool = False):
+    """Vorticity, s-1, or speed, m s-1, with or without streamlines, from a file of `shoal field`."""
+    return _axes("field", source, speed=speed, streamlines=streamlines)
 
 
-def study(source, of: str | None = None, relative: bool = False, states=()):
+def study(source, of: str | None = None, relative: bool = False, states=(), reference: str | None = None):
     """What a study or a comparison of methods calls for: orders, costs, curves, or a map of a quantity (None: the speed);
     relative: over the values of the first fish, in per cent; states: paths of steady formations, marked in a map over places
-    (filled: stable)."""
-    return _axes("study", source, of=of, relative=relative, states=states)
+    (filled: stable); reference: the path of a table of other values, drawn as dashed lines: its first line is a comment with
+    their source, its columns have the names of the swept key and of quantities."""
+    return _axes("study", source, of=of, relative=relative, states=states, reference=reference)
