@@ -195,15 +195,12 @@ void clearance_start(const struct school *school, struct state *state, struct ne
 
 // ---- fold test at every joint; beyond half a turn, all pairs of segments of line and outline
 
-// whether two segments that share no point cross: of n points (x, y) joined by segments; a closed line has a segment
-// from the last point to the first
-static bool line_crosses(int n, bool is_closed, const double *point) {
-    const int n_segments = is_closed ? n : n - 1;
+// whether two segments cross: of n points (x, y) joined by segments, on a closed line also from the last point to the
+// first; neighbours share a point, and do not cross there
+static bool line_crosses(int n, int n_segments, const double *point) {
     for (int i = 0; i < n_segments; i++) {
         const double *const a = point + 2 * i, *const b = point + 2 * ((i + 1) % n);
-        // the first and the last segment of a closed line share a point
-        const int end = i == 0 && is_closed ? n_segments - 1 : n_segments;
-        for (int j = i + 2; j < end; j++) {
+        for (int j = i + 2; j < n_segments; j++) {
             if (segments_cross(a, b, point + 2 * j, point + 2 * ((j + 1) % n))) return true;
         }
     }
@@ -235,7 +232,7 @@ bool self_crossing(const struct fish *fish, const double *y, double *scratch) {
         scratch[2 * k] = y[edge_place(fish, 0, k)];
         scratch[2 * k + 1] = y[edge_place(fish, 1, k)];
     }
-    if (line_crosses(n, false, scratch)) return true;
+    if (line_crosses(n, n - 1, scratch)) return true;
 
     // the outline: along the left side to the tail, back along the right side
     for (int k = 1; k < n - 1; k++) {
@@ -248,7 +245,7 @@ bool self_crossing(const struct fish *fish, const double *y, double *scratch) {
             scratch[2 * k + i] += side;
         }
     }
-    return line_crosses(2 * n - 2, true, scratch);
+    return line_crosses(2 * n - 2, 2 * n - 2, scratch);
 }
 
 void self_crossing_remember(const struct school *school, struct state *state, double *scratch) {
