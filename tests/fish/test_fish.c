@@ -434,6 +434,39 @@ TEST(a_street_has_two_staggered_rows_along_the_stream) {
     NEAR(setup.school->vortices[1] - setup.school->vortices[4], 2 * 0.28055, 1e-5, 0);
 }
 
+TEST(the_widening_is_the_slope_of_a_depth_that_swells_and_narrows) {
+    struct setup setup = setup_of(
+        TIME
+        "wake: {shedding: sheet}\nsheet: {curve: smooth}\n"
+        "fish: [{nodes: 7, sheet_points: 401, force: pressure, pressure: {span: finite}, body: {profile: table, "
+        "thickness_table: [.1, .1, .1, .1, .1, .1], depth_table: [.2, .5, .6, .3, .2, .7]}}]\n");
+    const struct fish *const fish = setup.school->fish;
+    for (int c = 0; c < fish->n_control; c++) {
+        // w^2/32 at the sheet points on both sides; edge midpoints have a kink of the slope between them
+        const double pace = pi / fish->n_control, left = fish->n_edges * (1 - cos(pace * c)) / 2,
+                     right = fish->n_edges * (1 - cos(pace * (c + 1))) / 2;
+        const double change = (fish->sheet_half[c + 1] - fish->sheet_half[c]) / (right - left);
+        NEAR(fish->control_widening[c], change, 2.5e-4, 0);
+    }
+}
+
+TEST(only_equal_sheets_share_their_integrals) {
+    struct setup setup =
+        setup_of(TIME
+                 "wake: {shedding: sheet}\nsheet: {curve: smooth}\n"
+                 "defaults: {fish: {nodes: 7, sheet_points: 21, force: pressure, pressure: {span: infinite}}}\nfish:\n"
+                 "  - {}\n"
+                 "  - {sheet_points: 41, start: {position: [0, 2]}}\n"
+                 "  - {nodes: 9, start: {position: [0, 4]}}\n"
+                 "  - {body: {depth: 0.4}, start: {position: [0, 6]}}\n"
+                 "  - {start: {position: [0, 8]}}\n");
+    const struct fish *const fish = setup.school->fish;
+    for (int f = 1; f < 4; f++) {
+        for (int g = 0; g < f; g++) assert_ptr_not_equal(fish[f].integrals, fish[g].integrals);
+    }
+    assert_ptr_equal(fish[4].integrals, fish[0].integrals);
+}
+
 TEST(a_depth_that_grows_in_proportion_is_a_straight_edge) {
     struct setup setup = setup_of(
         TIME

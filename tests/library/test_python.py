@@ -830,6 +830,17 @@ class Environments(unittest.TestCase):
         np.testing.assert_allclose(seen[:3], [*away, np.hypot(*away)], rtol=1e-6)
         np.testing.assert_allclose(seen[3:5], -(com[0] - com[1]), rtol=1e-6)
 
+    def test_neighbours_are_seen_ahead_and_to_the_left(self):
+        # towards 60 degrees: ahead is (cos, sin), left is (-sin, cos)
+        env = shoal.SwimEnv(PAIR, {"defaults.fish.start.heading": 60, "fish[0].start.position": [2.5, 1]}, fish=1,
+                            observations=("neighbours",))
+        seen, _ = env.reset()
+        ahead, left = np.array([0.5, 3**0.5 / 2]), np.array([-(3**0.5) / 2, 0.5])
+        for first, name in (0, "com"), (2, "com_velocity"):
+            of = env.run[name][0] - env.run[name][1]
+            np.testing.assert_allclose(seen[first : first + 2], [of @ ahead, of @ left], rtol=1e-5, atol=1e-6)
+        self.assertTrue(np.all(np.abs(seen[:2]) > 0.1), seen)
+
     def test_the_pressure_on_both_sides_is_that_at_the_sensors_of_the_case(self):
         sensors = {"fish[1].force": "pressure", "fish[1].body.depth": 0.25, "fish[1].sensors": [0.1, 0.6]}
         env = shoal.SwimEnv(PAIR, sensors, fish=1, observations=("pressure",), act_every=0.04)

@@ -1088,6 +1088,22 @@ TEST(a_state_that_is_set_to_itself_stays) {
     for (size_t i = 0; i < 4; i++) NEAR(one_of(run, "com", i), one_of(copy, "com", i), 5e-5, 0);
 }
 
+TEST(a_fish_that_is_moved_does_not_swim_the_way) {
+    struct shoal *const run = opened_to_change(state, 0.2);
+    double x[18];
+    assert_int_equal(shoal_state(run, 0, x, NULL), SHOAL_OK);
+    for (int k = 0; k < 9; k++) x[2 * k] -= 3;
+    assert_int_equal(shoal_set_state(run, 0, x, NULL), SHOAL_OK);
+    for (int i = 0; i < 5; i++) {
+        // the mean over the period is of the way since the move, or not a number yet
+        assert_int_equal(shoal_step(run), SHOAL_OK);
+        const double now = hypot(one_of(run, "com_velocity", 0), one_of(run, "com_velocity", 1));
+        const double mean = one_of(run, "ground_speed", 0);
+        if (isfinite(mean)) NEAR(mean, now, 0, 0.05);
+    }
+    ABOVE(one_of(run, "ground_speed", 0), 0.1);
+}
+
 TEST(a_state_that_no_body_can_have_is_refused) {
     struct shoal *const run = opened_to_change(state, 0.1), *const copy = copy_of(run);
     double x[18], v[18], wrong[18];

@@ -143,6 +143,28 @@ TEST(the_rate_of_the_shed_circulation_is_a_difference_of_events) {
     }
 }
 
+TEST(a_splitting_does_not_extrapolate_across_a_jump) {
+    // at a waypoint the steering bias jumps: what the integrator forgets there it cannot know when it is new there
+    struct simulation *simulation[2];
+    for (int i = 0; i < 2; i++) {
+        simulation[i] = school_simulation(
+            PRESSURE
+            "solver: {method: imex, step: 0.005, rtol: 1.0e-9}\n"
+            "fish: [{nodes: 7, force: pressure, control: {law: heading, waypoints: [[-1, 0], [-1, 1]], "
+            "acceptance_radius: 0.97}}]\n");
+    }
+    const struct state *const one = simulation[0]->state, *const other = simulation[1]->state;
+    int n_after = 0;
+    while (n_after < 3 && one->event < 20) {
+        const int before = one->control[0].waypoint;
+        for (int i = 0; i < 2; i++) school_ok(simulate_step(simulation[i]));
+        if (one->control[0].waypoint != before) school_ok(simulate_renew(simulation[1]));
+        n_after += one->control[0].waypoint > 0;
+        assert_memory_equal(one->y, other->y, (size_t)simulation[0]->school->n_unknowns * sizeof *one->y);
+    }
+    assert_int_equal(n_after, 3);
+}
+
 static void fails(const char *text, const char *message) {
     struct simulation *const simulation = school_simulation(text);
     school_fails(simulation, message);

@@ -461,6 +461,8 @@ TEST(what_can_have_no_steady_state_is_refused_with_the_reason) {
                        STATUS_CASE, "fish1 beats 1 times per second and fish2 beats 2 times");
     steady_setup_fails(COARSE "fluid: {gust: {amplitude: 0.1, frequency: 1.5}}\nfish: [{" FISH "}]\n", STATUS_CASE,
                        "1.5 gusts");
+    steady_setup_fails(COARSE "fluid: {gust: {amplitude: 0.1, frequency: 1.001}}\nfish: [{" FISH "}]\n", STATUS_CASE,
+                       "1.001 gusts");
     steady_setup_fails(COARSE "fluid: {shear: 0.1}\nfish: [{" FISH "}]\n", STATUS_CASE, "shear");
     steady_setup_fails(COARSE "fluid: {walls: [-1]}\nfish: [{" FISH "}]\n", STATUS_CASE, "beside a wall");
     steady_setup_fails(COARSE "fish: [{" FISH ", control: {waypoints: [[9, 0]]}}]\n", STATUS_CASE, "waypoints");
