@@ -57,6 +57,9 @@ void main_end_by_pipe(void);
  * that the parent process ignores stay ignored. */
 void main_catch_signals(void);
 
+/* Let the same signals end a command that does not catch them without a part of a file. */
+void main_leave_no_part(void);
+
 /* Request a stop after a wall time "HH:MM:SS" (--max-wall). Fails with STATUS_CASE for any other text. */
 enum status main_limit_wall_time(const char *text);
 

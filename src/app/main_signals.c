@@ -32,6 +32,23 @@ static const struct {
     {.number = SIGXCPU},
 };
 
+/* The end of a command that does not catch signals: no part of a file stays. */
+static void on_end(int number) {
+    durable_remove_parts();
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
+/* Handle the signals, but none that the parent process ignores (nohup). */
+static void handle_signals(void (*handler)(int), bool once) {
+    for (size_t i = 0; i < sizeof asking / sizeof *asking; i++) {
+        struct sigaction before, action = {.sa_handler = handler, .sa_flags = once ? asking[i].flags : 0};
+        sigemptyset(&action.sa_mask);
+        sigaction(asking[i].number, NULL, &before);
+        if (before.sa_handler != SIG_IGN) sigaction(asking[i].number, &action, NULL);
+    }
+}
+
 void main_end_by_pipe(void) {
     struct pollfd output = {.fd = STDOUT_FILENO};
     if (is_catching || poll(&output, 1, 0) != 1 || !(output.revents & POLLERR)) return;
@@ -40,14 +57,12 @@ void main_end_by_pipe(void) {
 }
 
 void main_catch_signals(void) {
-    for (size_t i = 0; i < sizeof asking / sizeof *asking; i++) {
-        struct sigaction before, action = {.sa_handler = on_signal, .sa_flags = asking[i].flags};
-        sigemptyset(&action.sa_mask);
-        sigaction(asking[i].number, NULL, &before);
-        // a signal that the parent process ignores (nohup) stays ignored
-        if (before.sa_handler != SIG_IGN) sigaction(asking[i].number, &action, NULL);
-    }
+    handle_signals(on_signal, true);
     is_catching = true;
+}
+
+void main_leave_no_part(void) {
+    handle_signals(on_end, false);
 }
 
 enum status main_limit_wall_time(const char *text) {

@@ -232,6 +232,7 @@ enum status main_error(const struct request *request) {
 
 enum status main_gather(const struct request *request) {
     struct report report;
+    main_leave_no_part();
     TRY(report_begin(&report));
     return report_end(&report, request->quiet,
                       study_gather(request->positional, request->command_line, request->strict, report.tables.stream,

@@ -32,6 +32,7 @@ enum status main_view(const struct request *request) {
         path = arena_text(request->arena, "%.*s.html", (int)length, name);
     }
 
+    main_leave_no_part();
     TRY(page_write(request->arena, run, path, request->force));
     note_missing(run);
     if (!request->quiet) say_line(stdout, "%s\n", path);
@@ -42,6 +43,7 @@ enum status main_export(const struct request *request) {
     const char *list;
     if (!request->vtk)
         return status_fail(STATUS_CASE, "export: choose a format: --vtk FOLDER; see shoal export --help");
+    main_leave_no_part();
     TRY(vtk_export(request->arena, request->positional, request->vtk, request->force, &list));
     note_missing(request->positional);
     if (!request->quiet) say_line(stdout, "%s\n", list);
@@ -112,6 +114,7 @@ enum status main_field(const struct request *request) {
     grid.nx = (int)n[0];
     grid.ny = (int)n[1];
 
+    main_leave_no_part();
     TRY(field_file_write(request->arena, path, request->force, run, request->command_line, row, &grid));
     if (!request->quiet) say_line(stdout, "%s: %d x %d points at t = %g s\n", path, grid.nx, grid.ny, row->state->t);
     return STATUS_OK;

@@ -124,6 +124,36 @@ static bool part_name_of(const char *target, char name[PATH_MAX]) {
 
 // ---- a file in the making
 
+/* The names of the unpublished parts of this process, for an end by a signal. */
+enum { MAX_PARTS = 8 };
+static struct {
+    _Atomic pid_t process; /* 0: free. A fork does not remove the parts of its parent */
+    char name[PATH_MAX];
+} parts[MAX_PARTS];
+
+static void part_note(const char *name) {
+    for (int i = 0; i < MAX_PARTS; i++) {
+        pid_t none = 0;
+        if (parts[i].process > 0 && parts[i].process != getpid()) parts[i].process = 0;
+        if (!atomic_compare_exchange_strong(&parts[i].process, &none, -1)) continue;
+        memcpy(parts[i].name, name, strlen(name) + 1);
+        parts[i].process = getpid();
+        return;
+    }
+}
+
+static void part_forget(const char *name) {
+    for (int i = 0; i < MAX_PARTS; i++) {
+        if (parts[i].process == getpid() && strcmp(parts[i].name, name) == 0) parts[i].process = 0;
+    }
+}
+
+void durable_remove_parts(void) {
+    for (int i = 0; i < MAX_PARTS; i++) {
+        if (parts[i].process == getpid()) unlink(parts[i].name);
+    }
+}
+
 int durable_begin(struct durable_part *part, const char *target, unsigned permissions) {
     *part = (struct durable_part){.descriptor = -1};
     if (!part_name_of(target, part->name)) return ENAMETOOLONG;
@@ -131,6 +161,7 @@ int durable_begin(struct durable_part *part, const char *target, unsigned permis
     int code = open_part(part->name, permissions, BYTE_OF_PART, &part->descriptor);
 
     if (code == 0) {
+        part_note(part->name);
         code = ftruncate(part->descriptor, 0) == 0 ? 0 : errno;
     } else {
         part->name[0] = '\0';
@@ -155,12 +186,16 @@ int durable_publish(struct durable_part *part, bool overwrite) {
     }
 
     if (!is_renamed && rename(part->name, part->target) != 0) return errno;
+    part_forget(part->name);
     part->name[0] = '\0';
     return durable_sync_folder(part->target);
 }
 
 void durable_end(struct durable_part *part) {
-    if (part->name[0] != '\0') unlink(part->name);
+    if (part->name[0] != '\0') {
+        unlink(part->name);
+        part_forget(part->name);
+    }
     if (part->descriptor >= 0) close(part->descriptor);
     part->name[0] = '\0';
     part->descriptor = -1;

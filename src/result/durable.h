@@ -57,6 +57,10 @@ int durable_publish(struct durable_part *part, bool overwrite);
 /* Close the part; remove an unpublished part. */
 void durable_end(struct durable_part *part);
 
+/* Remove all unpublished parts of this process, not those of its parent. For a handler of signals that end the process:
+ * safe at any time. */
+void durable_remove_parts(void);
+
 /* Remove the part that a process left when it died. */
 void durable_discard(const char *target);
 

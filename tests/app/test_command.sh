@@ -433,8 +433,31 @@ end_long_run() {
     pid=
 }
 
+# End a command by a signal while it writes: it has begun a part when it is stopped.
+end_while_writing() {  # signal, part, command...
+    local signal=$1 part=$2
+    shift 2
+    env --default-signal=INT,TERM,HUP "$program" "$@" >out 2>err </dev/null &
+    pid=$!
+    wait_for eval "compgen -G '$part'" >/dev/null || return 1
+    end_long_run "$signal"
+}
+
 signals() {
     local signal
+    printf '%s\n' 'format: 1' 'name: rows' 'time: {end: 100, shedding_interval: 0.01, output_interval: 0.01}' \
+        'fluid: {density: 0}' 'solver: {rtol: 1e-2}' \
+        'fish: [{nodes: 41, force: reactive, motion: {prescribed: all, speed: 1}}]' >rows.yaml
+    run run rows.yaml -q
+    for signal in INT TERM HUP; do
+        check "SIG$signal while view writes: the page is begun" end_while_writing "$signal" rows.html.part view rows.nc
+        check "SIG$signal while view writes: ended by the signal" ended $((128 + $(kill -l "$signal")))
+        check "SIG$signal while view writes: no file" test -z "$(compgen -G 'rows.html*')"
+        check "SIG$signal while export writes: a file is begun" end_while_writing "$signal" 'vtk/*.part' export rows.nc \
+            --vtk vtk --force
+        check "SIG$signal while export writes: no part" test -z "$(compgen -G 'vtk/*.part')"
+    done
+    rm -rf vtk rows.nc
     for signal in INT TERM; do
         check "SIG$signal: the run is going on" start_long_run
         end_long_run "$signal"

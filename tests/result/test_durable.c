@@ -2,6 +2,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -175,6 +176,40 @@ TEST(the_part_of_a_process_that_died_is_used_again) {
         durable_discard(path);
         assert_int_equal(n_files(), 0);
     }
+}
+
+static void end_by_signal(int number) {
+    durable_remove_parts();
+    _exit(number);
+}
+
+TEST(an_end_by_a_signal_leaves_no_part_of_its_own) {
+    struct durable_part of_parent, part;
+    assert_int_equal(durable_begin(&of_parent, path, 0666), 0);
+    const pid_t child = fork();
+    if (child == 0) {
+        // more parts than are noted, of which some are published and some ended
+        char name[80];
+        for (int i = 0; i < 20; i++) {
+            snprintf(name, sizeof name, "%s/of_child_%d", folder, i);
+            if (durable_begin(&part, name, 0666) != 0) _exit(1);
+            if (i == 10 && durable_publish(&part, false) != 0) _exit(1);
+            if (i < 18) durable_end(&part);
+        }
+        signal(SIGTERM, end_by_signal);
+        raise(SIGTERM);
+    }
+    int outcome;
+    assert_int_equal(waitpid(child, &outcome, 0), child);
+    assert_true(WIFEXITED(outcome) && WEXITSTATUS(outcome) == SIGTERM);
+
+    // the part of the parent, and the file that is published
+    assert_int_equal(n_files(), 2);
+    durable_end(&of_parent);
+    char published[80];
+    snprintf(published, sizeof published, "%s/of_child_10", folder);
+    assert_int_equal(unlink(published), 0);
+    assert_int_equal(n_files(), 0);
 }
 
 // ---- claims
