@@ -97,7 +97,7 @@ void say_progress_run(const struct simulate_progress *now, void *data) {
     snprintf(part[1], PART_BYTES, "%3.0f %%", 100 * done);
     snprintf(part[2], PART_BYTES, "%.0f s left", done > 0 ? now->wall_time * (1 - done) / done : 0);
     snprintf(part[3], PART_BYTES, "%6.2f x real time", now->t / now->wall_time);
-    snprintf(part[4], PART_BYTES, "%4.1f steps/event", (double)now->steps / (double)now->event);
+    snprintf(part[4], PART_BYTES, "%4.1f steps/event", (double)now->steps / fmax(1, (double)now->event));
     snprintf(part[5], PART_BYTES, "%6d vortices", now->n_vortices);
     progress_print(progress, 6, part);
 }

@@ -167,6 +167,8 @@ enum status simulate_step(struct simulation *simulation) {
 
     // integrate to the next event; the equations may be new
     simulation->residual->stop = simulation->stop;
+    simulation->residual->after_step = simulation->after_step;
+    simulation->residual->after_step_data = simulation->after_step_data;
     const double next = fish_event_time(school, state->event + 1);
     enum status status = integrator->advance(simulation->solver, next, simulation->stop);
 

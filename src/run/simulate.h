@@ -27,10 +27,12 @@ struct simulation {
     const struct integrator *integrator;
     void *solver;
     struct integrator_options options;
-    struct integrator_counts totals;   /* up to the last event, with the size of the last step */
-    const volatile sig_atomic_t *stop; /* simulate_step stops when *stop is not 0; may be NULL */
-    long n_events;                     /* of the whole run, without the event at t = 0 */
-    double started;                    /* wall clock, s; for a resumed run: less the wall time before the checkpoint */
+    struct integrator_counts totals;          /* up to the last event, with the size of the last step */
+    const volatile sig_atomic_t *stop;        /* simulate_step stops when *stop is not 0; may be NULL */
+    void (*after_step)(double t, void *data); /* as in struct residual */
+    void *after_step_data;
+    long n_events;  /* of the whole run, without the event at t = 0 */
+    double started; /* wall clock, s; for a resumed run: less the wall time before the checkpoint */
 };
 
 /* Create a simulation and perform the event at t = 0; stop when *stop is not 0. stop may be NULL. The simulation is an

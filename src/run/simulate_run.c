@@ -29,6 +29,7 @@ struct run {
     struct simulation *simulation;
     struct record record;
     struct checkpoints checkpoints;
+    long n_steps;         /* since the last event */
     struct state *before; /* state at the last event, if the run can be stopped between events */
 };
 
@@ -49,14 +50,41 @@ static enum status run_checkpoint_if_due(struct run *run) {
     return simulation->state->event < simulation->n_events ? simulate_renew(simulation) : STATUS_OK;
 }
 
+static void run_report(const struct run *run, double t) {
+    const struct simulation *const simulation = run->simulation;
+    struct integrator_counts counts;
+    simulation->integrator->count(simulation->solver, &counts);
+    struct simulate_progress progress = {.t = t,
+                                         .end = run->values->time.end,
+                                         .event = simulation->state->event,
+                                         .steps = counts.steps,
+                                         .wall_time = simulate_wall_time(simulation)};
+    for (int f = 0; f < simulation->school->n_fish; f++) {
+        progress.n_vortices += simulation->state->wake[f].n_vortex;
+    }
+    run->options->progress(&progress, run->options->data);
+}
+
+/* With many steps an event can take minutes. data: struct run. */
+static void run_report_step(double t, void *data) {
+    struct run *const run = data;
+    if (++run->n_steps % 100 == 0) run_report(run, t);
+}
+
 static enum status run_loop(struct run *run) {
     MEMORY_BOUNDARY(STATUS_MEMORY);
     const struct simulate_options *const options = run->options;
     struct simulation *const simulation = run->simulation;
     simulation->stop = options->stop;
     if (simulation->stop) run->before = state_create(simulation->arena, simulation->school);
+    if (options->progress) {
+        simulation->after_step = run_report_step;
+        simulation->after_step_data = run;
+    }
 
     while (simulation->state->event < simulation->n_events) {
+        run->n_steps = 0;
+
         // advance to the next event, or stop at the last event, with a checkpoint of the state there
         if (run->before) state_table_copy(run->before, simulation->state, simulation->school, false);
         const enum status status = options->stop && *options->stop ? STATUS_STOPPED : simulate_step(simulation);
@@ -72,19 +100,7 @@ static enum status run_loop(struct run *run) {
         TRY(run_write_if_due(run));
         TRY(run_checkpoint_if_due(run));
 
-        // report
-        if (!options->progress) continue;
-        struct integrator_counts counts;
-        simulate_count(simulation, &counts);
-        struct simulate_progress progress = {.t = simulation->state->t,
-                                             .end = run->values->time.end,
-                                             .event = simulation->state->event,
-                                             .steps = counts.steps,
-                                             .wall_time = simulate_wall_time(simulation)};
-        for (int f = 0; f < simulation->school->n_fish; f++) {
-            progress.n_vortices += simulation->state->wake[f].n_vortex;
-        }
-        options->progress(&progress, options->data);
+        if (options->progress) run_report(run, simulation->state->t);
     }
     return STATUS_OK;
 }

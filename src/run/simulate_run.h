@@ -10,10 +10,10 @@
 #include "base/status.h"
 #include "case/case.h"
 
-/* Progress of a run, reported after every event. */
+/* Progress of a run, reported after every event, and after every 100 steps of the integrator in between. */
 struct simulate_progress {
     double t, end;
-    long event;
+    long event;     /* the last one */
     long steps;     /* of the integrator, in total */
     int n_vortices; /* of all fish */
     double wall_time;

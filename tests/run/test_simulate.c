@@ -245,6 +245,27 @@ TEST(a_run_tells_its_progress_at_every_event) {
     assert_int_equal(access(path, R_OK), 0);
 }
 
+static int n_between;
+static double last_told;
+static void count_between(const struct simulate_progress *progress, void *data) {
+    (void)data;
+    ABOVE(progress->t, last_told - 1e-15);
+    last_told = progress->t;
+    n_between += progress->t < 0.02 * (double)(progress->event + 1) - 1e-9 &&
+                 progress->t > 0.02 * (double)progress->event + 1e-9;
+}
+
+TEST(an_event_of_many_steps_tells_its_progress_in_between) {
+    const struct simulate_options options = {
+        .path = *state, .overwrite = 1, .command = "test", .progress = count_between};
+    n_between = 0;
+    last_told = 0;
+    run_into("time: {end: 0.04, shedding_interval: 0.02}\nsolver: {method: rk4, step: 4e-5}\nfish: [{}]\n", &options,
+             STATUS_OK);
+    // 500 steps from event to event; the fifth report of each is at the event
+    assert_int_equal(n_between, 2 * 4);
+}
+
 /* Read wake_count of the rows 0 to 4 into n_vortices, and into holds_wake whether these rows contain the vortices. */
 static void read_wake(const char *path, int n_vortices[5], int holds_wake[5]) {
     int file, count, x;
