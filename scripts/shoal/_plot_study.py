@@ -66,7 +66,7 @@ class Study:
 
     def label(self, name):
         """The last word of a key or the name of a quantity, with its unit."""
-        variable = self.data.variables[name]
+        variable = self.data.variables[name if name in self.data.variables else f"stated_{name}"]
         word = variable.long_name.split(".")[-1] if hasattr(variable, "axis") else name
         of = word.removeprefix("steady_")
         word = ("steady " if of != word else "") + NAMES.get(of, of.replace("_", " "))

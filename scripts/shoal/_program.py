@@ -260,18 +260,21 @@ class Estimate(NamedTuple):
         return f"{self.quantity}{' of ' + self.fish if self.fish else ''}: {number}{' (flagged)' if self.flags else ''}{others}"
 
 
-def error(case, of, within: float | None = None, models: bool = False, assignments=None, path=None, overwrite: bool = False,
-          processes: int | None = None, progress: bool | None = None, folder=None) -> list[Estimate]:
+def error(case, of, within: float | None = None, models: bool = False, against=None, assignments=None, path=None,
+          overwrite: bool = False, processes: int | None = None, progress: bool | None = None, folder=None) -> list[Estimate]:
     """Vary every numerical key of a case by `shoal error`; returns quantities with their error bars, per fish.
 
     of: a quantity or a list of quantities, as "steady_speed". within: refine until the relative errors are smaller.
-    models: repeat the numbers with other choices of the model.
+    models: repeat the numbers with other choices of the model. against: the path of another case, "FISH=FISH", or along
+    a sweep "first" or another value of the swept key: adds the quantities ratio_... and change_..., whose errors are those
+    of the comparison: what both share cancels.
     path: of the folder of the members, study.nc and error.csv (None: the name of the case with -error). An error that
     cannot be made smaller than within is a shoal.Error.
     """
     options = [word for quantity in ([of] if isinstance(of, str) else of) for word in ("--of", text_of(quantity, "of"))]
     options += [] if within is None else ["--within", repr(number_of(within, "within"))]
     options += ["--models"] if models else []
+    options += [] if against is None else ["--against", os.fsdecode(text_of(against, "against"))]
     path = _run_study("error", case, assignments, path, overwrite, processes, progress, folder, options)
     found: dict = {}
     with open(os.path.join(path, "error.csv"), encoding="utf-8", newline="") as file:

@@ -32,6 +32,9 @@ static const struct option_help all_options[] = {
     {OPTION_OF, "of", "QUANTITY",
      "quantity of a result or of a steady state (steady_...) to estimate the error of; repeatable"},
     {OPTION_WITHIN, "within", "X", "refine until the relative errors are below X, such as 0.01"},
+    {OPTION_AGAINST, "against", "WHAT",
+     "ratio and difference, with their errors, to another case (alone.yaml), to another fish of the school "
+     "(follower=leader), or along --sweep to the `first` or another value"},
     {OPTION_SWEEP, "sweep", "KEY=LIST",
      "errors at every value of a key, separated by commas: fish[*].body.modulus=1e5,1e6,1e7; repeatable"},
     {OPTION_PLAN, "plan", NULL, "print the members of the error estimate and the estimated time; do not run"},
@@ -150,6 +153,7 @@ static void take_option(struct request *request, int code, char *argument) {
         case OPTION_BUNDLE: request->bundle = argument; break;
         case OPTION_OF: request->of[request->n_of++] = argument; break;
         case OPTION_WITHIN: request->within = argument; break;
+        case OPTION_AGAINST: request->against = argument; break;
         case OPTION_SWEEP: request->sweeps[request->n_sweeps++] = argument; break;
         case OPTION_PLAN: request->plan = 1; break;
         case OPTION_NO_CONFIRM: request->no_confirm = 1; break;

@@ -36,6 +36,7 @@ enum option_code {
     OPTION_MAX_WALL,
     OPTION_OF,
     OPTION_WITHIN,
+    OPTION_AGAINST,
     OPTION_SWEEP,
     OPTION_PLAN,
     OPTION_NO_CONFIRM,
@@ -61,6 +62,7 @@ struct request {
     int n_of;
     const char **of; /* of --of, names of quantities */
     const char *within;
+    const char *against;
     int plan, no_confirm, models;
     const char *from;
     const char *at, *grid, *box;

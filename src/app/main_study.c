@@ -1,4 +1,6 @@
 /* main_study.c: shoal study, error, gather and compare: many runs of one case. */
+#include <errno.h>
+#include <limits.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -182,6 +184,30 @@ enum status main_study(const struct request *request) {
     return study_run_in_folder(&values, request, "-study");
 }
 
+/* Set what the quantities are compared with: the file of a case, or a word that the case itself understands. */
+static enum status set_against(const struct request *request, const struct case_values *values,
+                               struct sweep_error *error) {
+    const char *const against = request->against, *const ending = strrchr(against, '.');
+    error->against = (char *)(uintptr_t)against;
+    error->against_kind = strchr(against, '=') ? AGAINST_FISH : AGAINST_POINT;
+    if (!ending || (strcmp(ending, ".yaml") != 0 && strcmp(ending, ".yml") != 0)) {
+        if (error->against_kind == AGAINST_FISH || values->n_axes > 0) return STATUS_OK;
+        return status_fail(STATUS_CASE,
+                           "--against %s: expects the file of a case, FISH=FISH, or with --sweep `first` or a value of "
+                           "the swept key",
+                           against);
+    }
+
+    // read the case by itself, for messages with the place in the file; a name in an assignment is relative to nothing
+    char path[PATH_MAX];
+    struct case_values other;
+    TRY(case_read(&other, against, 0, NULL));
+    case_free(&other);
+    if (!realpath(against, path)) return status_fail(STATUS_FILE, "%s: cannot be read: %s", against, strerror(errno));
+    error->against = arena_text(request->arena, "%s", path);
+    return STATUS_OK;
+}
+
 enum status main_error(const struct request *request) {
     struct case_values values;
     struct request with_errors = *request;
@@ -222,6 +248,7 @@ enum status main_error(const struct request *request) {
     if (request->within) TRY(study_read_number("--within", request->within, 0, &error.within));
     if (request->no_confirm) error.confirm = 0;
     if (request->models) error.models = 1;
+    if (request->against) TRY(set_against(request, &values, &error));
     text_add(&assignment, "error=");
     sweep_error_write(&assignment, &error);
     with_errors.assignments[with_errors.n_assignments++] = assignment.text;

@@ -203,6 +203,8 @@ static enum status read_case(struct case_values *values, const char *origin, con
 
     if (reading.tree.root) {
         for (int i = 0; i < n_assignments; i++) case_merge_assign(&reading.tree, assignments[i], &reading.errors);
+        const char *const place = arena_text(arena, "%s%s", !text ? origin : folder ? folder : "", text ? "/" : "");
+        case_merge_against(&reading.tree, text && !folder ? "" : place, &reading.errors);
         read_values(&reading);
         if (reading.errors.n == 0) keep_texts(&reading);
     }
@@ -250,8 +252,11 @@ static enum status read_member(struct case_values *values, const struct case_val
     // without a sweep, a member expects nothing
     assignments[n++] = "sweep=[]";
 
-    const enum status status =
-        case_parse(values, study->common, strlen(study->common), study->name, NULL, n, assignments);
+    // a member of an error study may be one of the other case
+    const struct sweep_axis *const first = study->n_axes > 0 ? &study->sweep[0] : NULL;
+    const bool is_other = first && first->is_against && first->is_against[sweep_member_value(study, member, 0)];
+    const char *const text = is_other ? study->error->against : study->common;
+    const enum status status = case_parse(values, text, strlen(text), study->name, NULL, n, assignments);
     if (status == STATUS_CASE) {
         status_fail(STATUS_CASE, "member %d (%s):\n%s", member, sweep_member_text(*arena, study, member),
                     status_message());

@@ -167,6 +167,42 @@ enum status case_merge_read(struct case_tree *tree, const char *origin, const ch
     return STATUS_OK;
 }
 
+// ---- the case that errors are compared with
+
+void case_merge_against(struct case_tree *tree, const char *place, struct yaml_errors *errors) {
+    const struct yaml_node *const map = yaml_tree_find(tree->root, "error");
+    struct yaml_entry *const entry = map && map->kind == YAML_MAP ? yaml_tree_entry(map, "against", 7) : NULL;
+    const struct yaml_node *const node = entry ? entry->value : NULL;
+    const char *const ending = node && node->kind == YAML_SCALAR ? strrchr(node->text, '.') : NULL;
+    if (!ending || (strcmp(ending, ".yaml") != 0 && strcmp(ending, ".yml") != 0)) return;
+
+    // relative to the folder, which ends at the last slash
+    const char *const slash = node->text[0] == '/' ? NULL : strrchr(place, '/');
+    const char *const path = arena_text(tree->arena, "%.*s%s", slash ? (int)(slash - place) + 1 : 0, place, node->text);
+    struct yaml_source *const source = add_source(tree, path);
+    struct open_file self = {0};
+    if (read_file(tree, source, &self) != STATUS_OK) {
+        yaml_errors_add(errors, node->mark, "error.against: %.200s: %s", source->name, status_message());
+        return;
+    }
+    struct yaml_node *const root = read_source(tree, source, source->name, &self, errors);
+    if (!root) return;
+    yaml_tree_take(root, "error");
+    yaml_tree_take(root, "expect");
+    if (yaml_tree_take(root, "sweep")) {
+        yaml_errors_add(errors, node->mark, "error.against: %.200s has a sweep: name one case", source->name);
+    }
+
+    // the name of the file, as for a case that is read by itself
+    if (!yaml_tree_find(root, "name")) {
+        const char *const start = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
+        struct yaml_node *const name = yaml_tree_node(tree->arena, YAML_SCALAR, node->mark);
+        name->text = arena_text(tree->arena, "%.*s", (int)(strrchr(start, '.') - start), start);
+        yaml_tree_put(tree->arena, root, "name", node->mark, name);
+    }
+    entry->value = root;
+}
+
 // ---- assignments
 
 /* Merge a value into *node at a path of keys; "" is the node itself. */

@@ -28,6 +28,10 @@ enum status case_merge_read(struct case_tree *tree, const char *origin, const ch
 /* Apply an assignment "fish[0].nodes=9" to the tree. */
 void case_merge_assign(struct case_tree *tree, const char *assignment, struct yaml_errors *errors);
 
+/* Replace the name of a file under error.against by the case of the file, so that the merged text is complete. place:
+ * the case file, or a folder with a slash at the end. */
+void case_merge_against(struct case_tree *tree, const char *place, struct yaml_errors *errors);
+
 /* The number of fish, and the node at a path ("time.end", "fish.nodes") for one fish (ignored for other paths): among
  * the keys of the fish or, with *is_default, under defaults.fish; NULL if absent. */
 int case_merge_n_fish(const struct case_tree *tree);

@@ -27,6 +27,7 @@ struct sweep_axis {
     bool refine;          /* the values are resolutions of the first key: a study of convergence */
     bool steady;          /* members are steady states; each search starts from the state of the previous value */
     int *before;          /* start from the state of this value instead, -1: start of the case; NULL     (n_values) */
+    bool *is_against;     /* run the case of error.against; NULL: no value does                            (n_values) */
     double order, within; /* the expected order of convergence: order +- within; NaN: none */
     uint64_t order_of;    /* bit q: of quantity q */
     double *reference;    /* see sweep_reference; NULL: none */

@@ -130,6 +130,43 @@ static void read_keys(struct arena *arena, struct sweep_error *error, const stru
     }
 }
 
+/* Read "against": a map is the text of a case, which case_merge.c has put in the place of the name of a file. */
+static void read_against(const struct case_values *values, struct sweep_error *error, const struct yaml_node *node,
+                         struct yaml_errors *errors) {
+    struct text text = {.arena = values->arena};
+    yaml_write_node(&text, node);
+    error->against = text.text;
+    if (!isnan(error->within)) {
+        yaml_errors_add(errors, node->mark, "error.within: refines one case: remove within or against");
+    }
+    if (node->kind == YAML_MAP) {
+        error->against_kind = AGAINST_CASE;
+        return;
+    }
+    if (node->kind == YAML_SCALAR) error->against = arena_text(values->arena, "%s", node->text);
+    const char *const equals = strchr(error->against, '=');
+    if (node->kind == YAML_SCALAR && equals) {
+        error->against_kind = AGAINST_FISH;
+        bool is_known[2] = {false, false};
+        for (int f = 0; f < values->school.n_fish; f++) {
+            const char *const name = values->school.fish[f].name;
+            if (!name) continue;
+            const size_t n = strlen(name);
+            is_known[0] |= n == (size_t)(equals - error->against) && strncmp(error->against, name, n) == 0;
+            is_known[1] |= strcmp(equals + 1, name) == 0;
+        }
+        if (is_known[0] && is_known[1]) return;
+        yaml_errors_add(errors, node->mark, "error.against: '%.60s': expects the names of two fish of this case",
+                        error->against);
+    } else if (node->kind == YAML_SCALAR && values->n_axes > 0) {
+        error->against_kind = AGAINST_POINT;
+    } else {
+        yaml_errors_add(errors, node->mark,
+                        "error.against: expects the file of a case, FISH=FISH, or along a sweep `first` or a value of "
+                        "the swept key");
+    }
+}
+
 void sweep_error_read(struct case_values *values, const struct yaml_node *root, struct yaml_errors *errors) {
     const struct yaml_node *const map = yaml_tree_find(root, "error");
 
@@ -141,7 +178,7 @@ void sweep_error_read(struct case_values *values, const struct yaml_node *root, 
         return;
     }
 
-    yaml_tree_check_keys(map, "error", "of, within, keys, confirm, models, most", errors);
+    yaml_tree_check_keys(map, "error", "of, within, keys, confirm, models, most, against", errors);
     struct sweep_error *const error = NEW(values->arena, values->error, 1);
     error->within = yaml_tree_positive(map, "error", "within", NAN, errors);
     error->most = yaml_tree_positive(map, "error", "most", SWEEP_ERROR_MOST, errors);
@@ -154,10 +191,12 @@ void sweep_error_read(struct case_values *values, const struct yaml_node *root, 
     }
     const struct yaml_node *const of = yaml_tree_find(map, "of"), *const keys = yaml_tree_find(map, "keys"),
                                   *const confirm = yaml_tree_find(map, "confirm"),
-                                  *const models = yaml_tree_find(map, "models");
+                                  *const models = yaml_tree_find(map, "models"),
+                                  *const against = yaml_tree_find(map, "against");
     error->confirm = !confirm || yaml_tree_boolean(confirm, "error.confirm", errors);
     error->models = models && yaml_tree_boolean(models, "error.models", errors);
     if (keys) read_keys(values->arena, error, keys, errors);
+    if (against) read_against(values, error, against, errors);
 
     // the quantities
     static const char expected[] = "error.of: expects the name of a quantity, or a list of names";
@@ -198,6 +237,11 @@ void sweep_error_write(struct text *text, const struct sweep_error *error) {
 
     if (!error->confirm) text_add(text, ", confirm: false");
     if (error->models) text_add(text, ", models: true");
+    if (error->against_kind == AGAINST_CASE) text_add(text, ", against: %s", error->against);
+    if (error->against_kind == AGAINST_POINT || error->against_kind == AGAINST_FISH) {
+        text_add(text, ", against: ");
+        yaml_write_scalar(text, error->against);
+    }
     for (int i = 0; i < error->n_keys; i++) {
         text_add(text, "%s%s: ", i == 0 ? ", keys: {" : ", ", short_name(error->levels[i].key));
         if (error->levels[i].n == 0) text_add(text, "default");

@@ -2,6 +2,7 @@
  * tests/case/test_sweep.c.
  *
  *     error: {of: [steady_speed, steady_cost_of_transport], within: 0.01, keys: default, confirm: true, models: false}
+ *     error: {of: steady_cost_of_transport, against: alone.yaml}     or first, 1e5, follower=leader
  *
  * Evaluation: study/error_plan.h and doc/studies.md. */
 #ifndef SWEEP_ERROR_H
@@ -55,6 +56,14 @@ struct sweep_error_levels {
 
 #define SWEEP_ERROR_MOST 16.0 /* the default of most */
 
+/* What the quantities of a case are compared with. */
+enum sweep_against {
+    AGAINST_NOTHING,
+    AGAINST_POINT, /* the first point along the first axis of the sweep, or the point with a value of its first key */
+    AGAINST_FISH,  /* another fish of the same run: "follower=leader" */
+    AGAINST_CASE   /* another case */
+};
+
 struct sweep_error {
     int n_of;
     char **of;     /* names of quantities of a result or of a steady state     (n_of) */
@@ -62,6 +71,8 @@ struct sweep_error {
     double most;   /* refine to members of at most this many times the cost of the case */
     bool confirm;  /* with a finer level of each key */
     bool models;   /* with all choices of the model */
+    enum sweep_against against_kind;
+    char *against; /* "first" or a value, two names, or the text of the other case; NULL: nothing */
     int n_keys;
     struct sweep_error_levels *levels; /* of the keys that are varied; none: of all     (n_keys) */
 };

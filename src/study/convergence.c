@@ -103,7 +103,7 @@ struct convergence_result convergence_judge(const struct convergence_levels *lev
     }
     result.error = largest;
     result.verdict = CONVERGENCE_NONE;
-    if (largest <= of_noise * noise * hypot(base[0], base[1])) return result;
+    if (!(largest > 0) || largest <= of_noise * noise * hypot(base[0], base[1])) return result;
 
     // Richardson's estimate with the order, at most the design order; fmin ignores NaN
     result.verdict = judge_differences(levels, n, f, &result, &result.first);
@@ -198,11 +198,28 @@ void convergence_reason(const struct convergence_levels *levels, const struct co
 
 // ---- values of members
 
-/* A number of a member; NaN if the member is not complete. */
+/* The member that a member is compared with. */
+static int twin_of(const struct error_study *study, int m) {
+    if (m == study->base) return study->twin->base;
+    for (int k = 0; k < study->n_keys; k++) {
+        for (int i = 0; i < study->key[k].n_levels; i++) {
+            if (study->key[k].member[i] == m) return study->key[k].twin[i];
+        }
+    }
+    return -1;
+}
+
+/* A number of a member, or its ratio to that of the twin, or the difference; NaN if a member is not complete. */
 static double value_of(const struct error_study *study, const struct member_file *members, int m, int q, int f) {
     if (m < 0 || !member_file_is_complete(&members[m])) return NAN;
     const int quantity = study->quantity[q];
-    return member_file_value(&members[m], quantity, member_file_quantity(quantity)->of_fish ? f : 0, 0);
+    const bool of_fish = member_file_quantity(quantity)->of_fish;
+    const double value = member_file_value(&members[m], quantity, of_fish ? f : 0, 0);
+    if (study->relation == ERROR_VALUE) return value;
+    const int twin_fish = of_fish ? error_plan_twin_fish(study, f) : 0;
+    if (twin_fish < 0) return NAN;
+    const double other = value_of(study->twin, members, twin_of(study, m), q, twin_fish);
+    return study->relation == ERROR_RATIO ? value / other : value - other;
 }
 
 double convergence_noise(const struct case_values *study, const struct case_values *values,
@@ -234,8 +251,17 @@ double convergence_noise(const struct case_values *study, const struct case_valu
     return rtol + search_error / (way > 0 ? fmin(1, is_tail ? strouhal * way : way) : 1);
 }
 
-/* The noise of a quantity of a member of an error study. */
+/* The noise of a quantity of a member of an error study; that of a ratio or a difference has both parts. */
 static double study_noise(const struct error_study *study, const struct member_file *members, int m, int q, int f) {
+    if (study->relation != ERROR_VALUE) {
+        const int twin = twin_of(study, m), found = error_plan_twin_fish(study, f), fish = found < 0 ? 0 : found;
+        const double own = study_noise(study->point, members, m, q, f),
+                     other = study_noise(study->twin, members, twin, q, fish);
+        if (study->relation == ERROR_RATIO) return own + other;
+        return (own * fabs(value_of(study->point, members, m, q, f)) +
+                other * fabs(value_of(study->twin, members, twin, q, fish))) /
+               fabs(value_of(study, members, m, q, f));
+    }
     return convergence_noise(study->study, study->values, members, m, study->base, study->is_static ? 0 : study->beat,
                              member_file_quantity(study->quantity[q])->name, f);
 }
@@ -496,6 +522,9 @@ void convergence_study_judge(struct error_study *study, const struct member_file
 }
 
 void convergence_sweep_judge(struct error_sweep *sweep, const struct member_file *members) {
+    if (sweep->ratio) convergence_sweep_judge(sweep->ratio, members);
+    if (sweep->change) convergence_sweep_judge(sweep->change, members);
+    if (sweep->against && sweep->ratio) convergence_study_judge(sweep->against, members);
     for (int p = 0; p < sweep->n_points; p++) convergence_study_judge(&sweep->point[p], members);
 
     // a point that is not full takes the largest relative errors of the keys that only the full points vary

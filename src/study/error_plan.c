@@ -15,6 +15,8 @@
 #include "steady/steady_problem.h"
 #include "study/study_folder.h"
 
+const char *const error_relation_words[N_ERROR_RELATIONS] = {"", "ratio", "change"};
+
 int error_plan_place(const struct error_study *study, int quantity, int fish) {
     return quantity * study->n_fish + fish;
 }
@@ -73,14 +75,23 @@ int error_plan_column(const struct error_study *study, const char *path, int fis
     return -1;
 }
 
+/* Point p; after the points of the sweep, the other case. */
+static struct error_study *point_at(const struct error_sweep *sweep, int p) {
+    return p < sweep->n_points ? &sweep->point[p] : sweep->against;
+}
+
+static int n_all_points(const struct error_sweep *sweep) {
+    return sweep->n_points + (sweep->against != NULL);
+}
+
 /* Whether one column serves all fish: the fish have equal values at every point, and no single fish is swept. */
 static bool is_of_all_fish(const struct error_sweep *sweep, const char *path) {
     const struct sweep_axis *const axis = &sweep->study.sweep[0];
     for (int c = 0; c < axis->n_keys; c++) {
         if (strcmp(axis->key[c].row, path) == 0 && fish_of(&axis->key[c]) >= 0) return false;
     }
-    for (int p = 0; p < sweep->n_points; p++) {
-        const struct case_values *const values = sweep->point[p].values;
+    for (int p = 0; p < n_all_points(sweep); p++) {
+        const struct case_values *const values = point_at(sweep, p)->values;
         for (int f = 1; f < n_owners(values, path); f++) {
             const double own = plan_number_of(values, path, f), first = plan_number_of(values, path, 0);
             if (!(fabs(own - first) <= 0) && !(isnan(own) && isnan(first))) return false;
@@ -184,12 +195,15 @@ static struct row make_row(const struct error_study *study, int n, const struct 
     return row;
 }
 
-/* Append a row to the axis; the search of the member starts from the member before. Returns the member. */
-static int row_append(struct error_sweep *sweep, char *const *value, int before) {
+/* Append a row to the axis; the search of the member starts from the member before. is_against: a member of the other
+ * case. Returns the member. */
+static int row_append(struct error_sweep *sweep, char *const *value, int before, bool is_against) {
     struct sweep_axis *const axis = &sweep->study.sweep[0];
     const size_t n = (size_t)axis->n_keys, m = (size_t)axis->n_values;
     GROW(sweep->arena, axis->value, n * (m + 1));
     GROW(sweep->arena, axis->before, m + 1);
+    GROW(sweep->arena, axis->is_against, m + 1);
+    axis->is_against[m] = is_against;
     memcpy(axis->value + n * m, value, n * sizeof *axis->value);
     axis->before[m] = before;
     return axis->n_values++;
@@ -201,10 +215,10 @@ int error_plan_member(struct error_study *study, int n, const struct error_plan_
     const int ignored = error_plan_column(study, "steady.multipliers", 0);
     const struct row row = make_row(study, n, changes);
 
-    // a member with the same values, except for multipliers
+    // a member of the same case with the same values, except for multipliers
     *is_new = false;
     for (int m = 0; m < axis->n_values; m++) {
-        bool is_same = true;
+        bool is_same = axis->is_against[m] == study->is_against;
         for (int c = 0; c < axis->n_keys && is_same; c++) {
             is_same = c == ignored || strcmp(axis->value[m * axis->n_keys + c], row.value[c]) == 0;
         }
@@ -212,7 +226,7 @@ int error_plan_member(struct error_study *study, int n, const struct error_plan_
     }
 
     *is_new = true;
-    return row_append(study->sweep, row.value, before);
+    return row_append(study->sweep, row.value, before, study->is_against);
 }
 
 /* Whether a level of a key is a valid case. */
@@ -220,7 +234,7 @@ static bool is_valid_level(struct error_study *study, int k, double value) {
     struct arena *const scratch = arena_create(study->sweep->arena, "a level of an error study");
     struct case_values *values;
     const struct row row = make_row(study, 1, &(struct error_plan_change){k, value});
-    const int member = row_append(study->sweep, row.value, -1);
+    const int member = row_append(study->sweep, row.value, -1, study->is_against);
     const enum status status = study_folder_case(scratch, &values, study->study, member);
     if (status == STATUS_MEMORY) arena_lack(scratch, 0);
     study->study->sweep[0].n_values = member;
@@ -381,7 +395,7 @@ static enum status choose_keys(struct error_study *study, const struct school *s
         NEW(study->sweep->arena, key->part, study->n_asked * study->n_fish);
     }
 
-    if (study->n_keys > 0 || !study->is_full) return STATUS_OK;
+    if (study->n_keys > 0 || !study->is_full || study->is_against) return STATUS_OK;
     return status_fail(STATUS_CASE, "error.keys: none of these keys changes anything in this case");
 }
 
@@ -493,6 +507,60 @@ int error_plan_members(struct error_study *study) {
     return n_new;
 }
 
+/* Set the twin of each point: the point itself, the point with a value of the first axis, or the other case. */
+static enum status choose_twins(struct error_sweep *sweep, int n_axes, const struct sweep_axis *axes) {
+    struct arena *const arena = sweep->arena;
+    const struct sweep_error *const error = sweep->study.error;
+    sweep->fish = sweep->twin_fish = -1;
+    if (error->against_kind == AGAINST_NOTHING) return STATUS_OK;
+    NEW(arena, sweep->twin, sweep->n_points);
+    for (int p = 0; p < sweep->n_points; p++) sweep->twin[p] = p;
+
+    if (error->against_kind == AGAINST_FISH) {
+        const char *const equals = strchr(error->against, '=');
+        for (int f = 0; f < sweep->study.school.n_fish; f++) {
+            const char *const name = sweep->study.school.fish[f].name;
+            const size_t n = strlen(name);
+            const bool is_first = n == (size_t)(equals - error->against) && strncmp(error->against, name, n) == 0;
+            if (is_first) sweep->fish = f;
+            if (strcmp(equals + 1, name) == 0) sweep->twin_fish = f;
+        }
+    } else if (error->against_kind == AGAINST_POINT) {
+        // a value is compared as a number, or as a text
+        double wanted, value;
+        int found = strcmp(error->against, "first") == 0 ? 0 : -1;
+        for (int i = 0; i < axes[0].n_values && found < 0; i++) {
+            const char *const text = axes[0].value[i * axes[0].n_keys];
+            const bool are_numbers = text_number(text, &value) && text_number(error->against, &wanted);
+            if (are_numbers ? !(fabs(value - wanted) > 1e-12 * fabs(wanted)) : strcmp(text, error->against) == 0)
+                found = i;
+        }
+        if (found < 0) {
+            return status_fail(STATUS_CASE, "error.against: %.60s is neither `first` nor a value of %s", error->against,
+                               n_axes > 0 ? axes[0].key[0].path : "a sweep");
+        }
+        const int stride = sweep->n_points / axes[0].n_values;
+        for (int p = 0; p < sweep->n_points; p++) sweep->twin[p] = found * stride + p % stride;
+    } else {
+        struct case_values *values;
+        struct error_study *against;
+        TRY(study_folder_parse(arena, &values, error->against, "error.against", 0, NULL));
+        if (values->school.n_fish > sweep->study.school.n_fish) {
+            return status_fail(STATUS_CASE, "error.against: %s has more fish than the case: exchange the two",
+                               values->name);
+        }
+        sweep->against = NEW(arena, against, 1);
+        *against = (struct error_study){.sweep = sweep,
+                                        .study = &sweep->study,
+                                        .values = values,
+                                        .is_full = true,
+                                        .is_against = true,
+                                        .n_fish = values->school.n_fish};
+        for (int p = 0; p < sweep->n_points; p++) sweep->twin[p] = sweep->n_points;
+    }
+    return STATUS_OK;
+}
+
 /* Create the points of the sweep, and the axis of the members in place of the axes of the sweep. *swept: the values of
  * the swept keys (n_points, n_swept) */
 static enum status create_points(struct error_sweep *sweep, char ***swept, const struct study_options *options) {
@@ -527,6 +595,8 @@ static enum status create_points(struct error_sweep *sweep, char ***swept, const
         }
     }
 
+    TRY(choose_twins(sweep, n_axes, from));
+
     // the conditions of expectations name keys of the one axis
     struct sweep_expectation *expect;
     NEW(arena, expect, study->n_expectations);
@@ -548,6 +618,125 @@ static enum status create_points(struct error_sweep *sweep, char ***swept, const
     return STATUS_OK;
 }
 
+/* Choose quantities, keys and columns of a point. */
+static enum status plan_keys(struct error_study *point) {
+    struct school *school;
+    TRY(fish_school_create(point->sweep->arena, &school, &point->values->school));
+    for (int f = point->n_fish - 1; f >= 0; f--) {
+        if (school->fish[f].period > 0) point->beat = school->fish[f].period;
+    }
+    point->is_static = steady_static_applies(school);
+    enum status status = choose_quantities(point);
+    point->is_static &= point->is_steady;
+    if (status == STATUS_OK) status = choose_keys(point, school);
+    if (status == STATUS_OK) list_objections(point, school);
+    fish_school_free(school);
+    if (status == STATUS_OK) add_all_columns(point);
+    return status;
+}
+
+// ---- comparisons
+
+/* The key of a study in a row of the table; NULL: not varied. */
+static struct error_study_key *key_in(struct error_study *study, const struct sweep_error_key *row) {
+    for (int k = 0; k < study->n_keys; k++) {
+        if (study->key[k].row == row) return &study->key[k];
+    }
+    return NULL;
+}
+
+/* The level of the twin for a level of a key: the same choice, or the same part of the level of the case. */
+static double twin_level(const struct error_study_key *key, const struct error_study_key *twin, int level) {
+    if (key->row->n_levels > 0) return key->value[level];
+    const double value = twin->value[twin->first_stated] / key->value[key->first_stated] * key->value[level];
+    return key->row->kind == SWEEP_POINTS ? round(value) : value;
+}
+
+/* Give the other case the levels of all points, where they are valid. */
+static void choose_levels_against(struct error_sweep *sweep) {
+    struct error_study *const against = sweep->against;
+    for (int k = 0; k < against->n_keys; k++) {
+        struct error_study_key *const key = &against->key[k];
+        for (int p = 0; p < sweep->n_points; p++) {
+            const struct error_study_key *const from = key_in(&sweep->point[p], key->row);
+            for (int i = 0; from && i < from->n_levels; i++) {
+                const double value = twin_level(from, key, i);
+                if (is_valid_level(against, k, value)) error_plan_insert(key, value);
+            }
+        }
+        if (key->n_levels == 1) snprintf(key->objection, CONVERGENCE_BYTES, "no level of the case is valid");
+    }
+    error_plan_members(against);
+}
+
+/* The comparison of all points with their twins: only levels that both have. A key that does not affect the twin
+ * compares with the twin itself. */
+static struct error_sweep *create_comparison(struct error_sweep *sweep, enum error_relation relation) {
+    struct arena *const arena = sweep->arena;
+    struct error_sweep *compared;
+    NEW(arena, compared, 1);
+    *compared = *sweep;
+    compared->ratio = compared->change = NULL;
+    NEW(arena, compared->point, sweep->n_points);
+    for (int p = 0; p < sweep->n_points; p++) {
+        struct error_study *const from = &sweep->point[p], *const twin = point_at(sweep, sweep->twin[p]),
+                                  *const to = &compared->point[p];
+        const int n = from->n_asked * from->n_fish;
+        *to = *from;
+        to->sweep = compared;
+        to->relation = relation;
+        to->point = from;
+        to->twin = twin;
+        NEW(arena, to->value, n);
+        NEW(arena, to->error, n);
+        NEW(arena, to->together, n);
+        NEW(arena, to->shared, n);
+        NEW(arena, to->lowest, n);
+        NEW(arena, to->highest, n);
+        for (int k = 0; k < to->n_keys; k++) {
+            struct error_study_key *const key = &to->key[k];
+            const struct error_study_key *const other = key_in(twin, key->row), copy = *key;
+            key->n_levels = 0;
+            for (int i = 0; i < copy.n_levels; i++) {
+                int member = -1;
+                for (int j = 0; other && j < other->n_levels; j++) {
+                    const double wanted = twin_level(&copy, other, i);
+                    if (!(fabs(other->value[j] - wanted) > 1e-9 * fabs(wanted))) member = other->member[j];
+                }
+                if (member < 0 && (i == copy.stated || !other)) member = twin->base;
+                if (member < 0) continue;
+                if (i == copy.stated) key->stated = key->first_stated = key->n_levels;
+                key->value[key->n_levels] = copy.value[i];
+                key->member[key->n_levels] = copy.member[i];
+                key->twin[key->n_levels++] = member;
+            }
+            if (!*key->objection && other) memcpy(key->objection, other->objection, CONVERGENCE_BYTES);
+            if (key->n_levels == 1 && !*key->objection) {
+                snprintf(key->objection, CONVERGENCE_BYTES, "both cases have no other level in common");
+            }
+            NEW(arena, key->part, n);
+        }
+    }
+    return compared;
+}
+
+int error_plan_twin_fish(const struct error_study *study, int fish) {
+    const struct error_sweep *const sweep = study->sweep;
+    if (sweep->fish >= 0) return fish == sweep->fish ? sweep->twin_fish : -1;
+    const int n_twin = study->twin->n_fish;
+    return n_twin == 1 ? 0 : fish < n_twin ? fish : -1;
+}
+
+char *error_plan_twin_name(const struct error_study *study, int fish) {
+    struct arena *const arena = study->sweep->arena;
+    const struct case_values *const values = study->twin->values;
+    const int twin = error_plan_twin_fish(study, fish);
+    if (study->sweep->fish >= 0) return arena_text(arena, "%s", values->school.fish[twin].name);
+    if (!study->twin->is_against) return arena_text(arena, "point %d", study->twin->base);
+    if (values->school.n_fish == 1) return arena_text(arena, "%s", values->name);
+    return arena_text(arena, "%s in %s", values->school.fish[twin].name, values->name);
+}
+
 enum status error_plan_create(struct arena *arena, struct error_sweep **plan, const struct case_values *values,
                               const struct study_options *options) {
     struct error_sweep *sweep;
@@ -562,40 +751,33 @@ enum status error_plan_create(struct arena *arena, struct error_sweep **plan, co
     char **swept = NULL, **value;
     TRY(create_points(sweep, &swept, options));
     struct study_watch watch = {.options = options, .what = "checked", .n = sweep->n_points};
-    for (int p = 0; p < sweep->n_points; p++) {
-        struct error_study *const point = &sweep->point[p];
-        struct school *school;
+    for (int p = 0; p < n_all_points(sweep); p++) {
         TRY(study_folder_watch(&watch, p + 1));
-        TRY(fish_school_create(arena, &school, &point->values->school));
-        for (int f = point->n_fish - 1; f >= 0; f--) {
-            if (school->fish[f].period > 0) point->beat = school->fish[f].period;
-        }
-        point->is_static = steady_static_applies(school);
-        enum status status = choose_quantities(point);
-        point->is_static &= point->is_steady;
-        if (status == STATUS_OK) status = choose_keys(point, school);
-        if (status == STATUS_OK) list_objections(point, school);
-        fish_school_free(school);
-        TRY(status);
-        add_all_columns(point);
+        TRY(plan_keys(point_at(sweep, p)));
+    }
+    if (sweep->against && sweep->against->is_static != sweep->point[0].is_static) {
+        return status_fail(STATUS_CASE, "error.against: %s %s: compare two swimmers, or two bodies without a beat",
+                           sweep->against->values->name,
+                           sweep->against->is_static ? "has no beat" : "has a beat, and the case has none");
     }
 
     // the case of each point; the search of a point starts from the state of the point before
     struct sweep_axis *const axis = &sweep->study.sweep[0];
     axis->steady = sweep->point[0].is_steady;
     NEW(arena, value, axis->n_keys);
-    for (int p = 0; p < sweep->n_points; p++) {
-        struct error_study *const point = &sweep->point[p];
+    for (int p = 0; p < n_all_points(sweep); p++) {
+        struct error_study *const point = point_at(sweep, p);
         for (int c = 0; c < axis->n_keys; c++) {
             const char *const path = axis->key[c].row;
             const int f = fish_of(&axis->key[c]) < 0 ? 0 : fish_of(&axis->key[c]);
             const struct sweep_error_key *const row = sweep_error_find(path);
             const bool is_choice = row && row->n_levels > 0;
-            value[c] = c < sweep->n_swept ? swept[p * sweep->n_swept + c]
-                       : is_choice        ? arena_text(arena, "%s", "")
-                                   : text_of(point, case_table_row(path), plan_number_of(point->values, path, f));
+            const bool is_swept = c < sweep->n_swept;
+            value[c] = f >= point->n_fish || (is_swept ? point->is_against : is_choice) ? arena_text(arena, "%s", "")
+                       : is_swept                                                       ? swept[p * sweep->n_swept + c]
+                                  : text_of(point, case_table_row(path), plan_number_of(point->values, path, f));
         }
-        point->base = point->stated = row_append(sweep, value, p - 1);
+        point->base = point->stated = row_append(sweep, value, point->is_against ? -1 : p - 1, point->is_against);
     }
 
     watch = (struct study_watch){.options = options, .what = "planned", .n = sweep->n_points};
@@ -603,6 +785,12 @@ enum status error_plan_create(struct arena *arena, struct error_sweep **plan, co
         TRY(choose_levels(&sweep->point[p]));
         error_plan_members(&sweep->point[p]);
         TRY(study_folder_watch(&watch, p + 1));
+    }
+    if (sweep->against) choose_levels_against(sweep);
+    if (sweep->twin) {
+        struct error_sweep *const ratio = create_comparison(sweep, ERROR_RATIO);
+        sweep->change = create_comparison(sweep, ERROR_CHANGE);
+        sweep->ratio = ratio;
     }
     *plan = sweep;
     return STATUS_OK;

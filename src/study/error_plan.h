@@ -14,7 +14,11 @@
  *
  *     point                  0      1      2      3      4      5      6
  *     all keys               x                    x                    x
- *     nodes and interval            x      x             x      x                 others: from 0, 3, 6 */
+ *     nodes and interval            x      x             x      x                 others: from 0, 3, 6
+ *
+ * With `against` every value is also compared with that of a twin: of another case, of another point of the sweep, or
+ * of another fish of the same run. The twin varies the same keys by the same factors. Ratio and difference are
+ * quantities of their own, judged level by level: errors that both values share cancel. */
 #ifndef ERROR_PLAN_H
 #define ERROR_PLAN_H
 
@@ -37,6 +41,7 @@ struct error_study_key {
     int n_levels, stated;             /* number of levels; level of the stated value */
     double value[ERROR_STUDY_LEVELS]; /* of the first fish that has the key */
     int member[ERROR_STUDY_LEVELS];
+    int twin[ERROR_STUDY_LEVELS];      /* the member to compare with, in a comparison */
     int first_stated;                  /* level of the case, before any refinement */
     int n_added;                       /* levels added for `within` */
     char objection[CONVERGENCE_BYTES]; /* reason to distrust any order, or ""; n_levels 1: reason for not varying */
@@ -50,13 +55,22 @@ struct error_study_model {
     int key, level; /* key -1: no choice has another value */
 };
 
+/* What the values of a study are: of the case itself, or compared with those of the twin. */
+enum error_relation { ERROR_VALUE, ERROR_RATIO, ERROR_CHANGE, N_ERROR_RELATIONS };
+
+/* The beginnings of the names of compared quantities: "ratio", "change". */
+extern const char *const error_relation_words[N_ERROR_RELATIONS];
+
 /* The errors of one point. */
 struct error_study {
-    struct error_sweep *sweep;        /* the owner */
-    struct case_values *study;        /* of the sweep: the case, with the axis of members */
-    const struct case_values *values; /* the case of this point */
-    bool is_full;                     /* varies all keys */
-    bool is_steady, is_static;        /* steady states; equilibria, without a beat */
+    struct error_sweep *sweep;              /* the owner */
+    enum error_relation relation;           /* of a ratio or a change: */
+    const struct error_study *point, *twin; /* the study whose values are compared, and that of the other values */
+    struct case_values *study;              /* of the sweep: the case, with the axis of members */
+    const struct case_values *values;       /* the case of this point */
+    bool is_full;                           /* varies all keys */
+    bool is_against;                        /* the other case */
+    bool is_steady, is_static;              /* steady states; equilibria, without a beat */
     int n_fish;
     double beat;                          /* s; 0: none */
     int n_asked;                          /* requested quantities */
@@ -81,8 +95,18 @@ struct error_sweep {
     struct case_values study; /* the case, with the axis of members */
     int n_swept;              /* the first keys of the axis are those of the sweep */
     int n_points;
-    struct error_study *point; /* (n_points) */
+    struct error_study *point;          /* (n_points) */
+    struct error_study *against;        /* the other case; NULL: none */
+    int *twin;                          /* the point that each point is compared with; NULL: none   (n_points) */
+    int fish, twin_fish;                /* the fish that are compared with each other; -1: each with its own twin */
+    struct error_sweep *ratio, *change; /* the comparisons: points with other values and keys; NULL: none */
 };
+
+/* The fish of the twin of a fish; -1: none. */
+int error_plan_twin_fish(const struct error_study *study, int fish);
+
+/* The name of what fish f is compared with: "alone", "leader", "point 0". */
+char *error_plan_twin_name(const struct error_study *study, int fish);
 
 /* Plan the members of a case with `error`. options: for progress and stop; NULL: none. Fails with STATUS_CASE (an
  * unknown quantity, a quantity of runs beside one of steady states, or no key) or STATUS_STOPPED. */

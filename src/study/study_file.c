@@ -106,6 +106,7 @@ struct variable {
     int row;
     int number;    /* of the quantity: in sweep_quantities for orders, requested for errors, else in member_file.h */
     int axis, key; /* of a swept key */
+    enum error_relation relation;
     const struct member_file_quantity *quantity; /* NULL: none */
     const char *name, *unit, *meaning;
     enum netcdf_type type;
@@ -137,7 +138,12 @@ static char *fill_name(struct arena *arena, const char *format, const char *quan
 static void add_variable(struct contents *contents, struct variable v) {
     const struct row *const row = &rows[v.row];
     const char *name = v.quantity ? v.quantity->name : "", *meaning = v.row == QUANTITY ? v.quantity->long_name : name;
-    const char *unit = v.quantity ? v.quantity->unit : "1";
+    const char *unit = v.quantity && v.relation != ERROR_RATIO ? v.quantity->unit : "1";
+    if (v.relation != ERROR_VALUE) {
+        name = arena_text(contents->arena, "%s_%s", error_relation_words[v.relation], name);
+        meaning =
+            arena_text(contents->arena, "%s %s that of the twin", meaning, v.relation == ERROR_RATIO ? "over" : "less");
+    }
     v.type = row->type;
     if (v.row == SWEPT_KEY) {
         // the variable of "fish[*].body.modulus" is fish_body_modulus
@@ -196,9 +202,14 @@ static void list_variables(struct contents *contents) {
             if (!(sweep_refine_orders(study) >> q & 1)) continue;
             add_variable(contents, (struct variable){.row = r, .number = q, .quantity = member_file_quantity(number)});
         }
-        for (int q = 0; contents->errors && existence == BY_ERROR && q < contents->errors->point[0].n_asked; q++) {
-            const int number = contents->errors->point[0].quantity[q];
-            add_variable(contents, (struct variable){.row = r, .number = q, .quantity = member_file_quantity(number)});
+        const int n_relations = contents->errors && contents->errors->twin ? N_ERROR_RELATIONS : 1;
+        for (int q = 0; contents->errors && existence == BY_ERROR && q < n_relations * contents->errors->point->n_asked;
+             q++) {
+            const int asked = q / n_relations, number = contents->errors->point[0].quantity[asked];
+            add_variable(contents, (struct variable){.row = r,
+                                                     .number = asked,
+                                                     .relation = (enum error_relation)(q % n_relations),
+                                                     .quantity = member_file_quantity(number)});
         }
     }
 }
@@ -264,7 +275,10 @@ static struct value order_value(const struct contents *contents, const struct va
 static struct value error_value(const struct contents *contents, const struct variable *v, const int *i,
                                 char text[CONVERGENCE_BYTES]) {
     const bool is_of_point = v->n_dimensions > 0 && v->dimension[0] == BY_POINT;
-    const struct error_study *const point = &contents->errors->point[is_of_point ? *i : 0];
+    const struct error_sweep *const errors = v->relation == ERROR_RATIO    ? contents->errors->ratio
+                                             : v->relation == ERROR_CHANGE ? contents->errors->change
+                                                                           : contents->errors;
+    const struct error_study *const point = &errors->point[is_of_point ? *i : 0];
     if (v->row == POINT_MEMBER) return (struct value){.number = point->stated};
     if (is_of_point) i++;
     const bool is_model = v->row == LOWEST || v->row == HIGHEST;
@@ -702,8 +716,9 @@ static enum status refine_and_report(struct arena *arena, struct error_sweep *sw
 
     // deliberately coarse levels have separate warnings, which are not printed
     const bool is_one = sweep->n_swept == 0;
-    const int n =
-        study_print_warnings(arena, &members[is_one ? first->stated : 0], is_one ? 1 : sweep->n_points, warnings);
+    int n = study_print_warnings(arena, &members[is_one ? first->stated : 0], is_one ? 1 : sweep->n_points, warnings);
+    const struct error_study *const against = sweep->against;
+    if (against) n += study_print_warnings(arena, &members[against->base], 1, warnings);
     if (strict && n > 0 && status == STATUS_OK) {
         status = status_fail(STATUS_MISSED, "%d warning%s about the stated value%s, with --strict", n, n > 1 ? "s" : "",
                              is_one ? "" : "s");

@@ -97,8 +97,11 @@ enum status study_folder_read_members(struct arena *arena, struct member_file **
             const enum status status = member_file_read(arena, member, path);
             if (status == STATUS_FILE) member->status = arena_text(arena, "failed: %s", status_message());
             if (status != STATUS_FILE) TRY(status);
+            const struct sweep_axis *const first = study->n_axes > 0 ? &study->sweep[0] : NULL;
+            const bool is_other = first && first->is_against && first->is_against[sweep_member_value(study, m, 0)];
+            const int n_fish = study->school.n_fish;
             if (status == STATUS_OK && (strcmp(member->study, study->merged) != 0 || member->number != m ||
-                                        member->n_fish != study->school.n_fish)) {
+                                        (is_other ? member->n_fish > n_fish : member->n_fish != n_fish))) {
                 return status_fail(STATUS_FILE, "%s is a result of another study than the first file in the folder",
                                    path);
             }

@@ -405,10 +405,18 @@ static const struct member_file_quantity *quantity_of(const struct error_study *
     return member_file_quantity(study->quantity[q]);
 }
 
-/* The name of a quantity without "steady_". */
+/* The name of a quantity without "steady_", or of a comparison of it: "ratio of speed". */
 static const char *short_name_of(const struct error_study *study, int q) {
-    const char *const name = quantity_of(study, q)->name;
-    return name + (strncmp(name, "steady_", 7) == 0 ? 7 : 0);
+    const char *const whole = quantity_of(study, q)->name, *const name =
+                                                               whole + (strncmp(whole, "steady_", 7) == 0 ? 7 : 0);
+    if (study->relation == ERROR_VALUE) return name;
+    return arena_text(study->sweep->arena, "%s of %s", error_relation_words[study->relation], name);
+}
+
+/* The unit of a value; "": none. */
+static const char *unit_of(const struct error_study *study, int q) {
+    const char *const unit = quantity_of(study, q)->unit;
+    return study->relation == ERROR_RATIO || strcmp(unit, "1") == 0 ? "" : unit;
 }
 
 /* The value of a level: "17", or a word. */
@@ -524,11 +532,17 @@ static int decimals_for(double number) {
 static void print_value(const struct error_study *study, int q, int f, FILE *stream) {
     const int place = error_plan_place(study, q, f);
     const double value = study->value[place], error = study->error[place];
-    const char *const own_unit = quantity_of(study, q)->unit;
-    const char *const unit = strcmp(own_unit, "1") == 0 ? "" : own_unit, *const blank = *unit ? " " : "";
+    const char *const unit = unit_of(study, q), *const blank = *unit ? " " : "";
+    const bool is_ratio = study->relation == ERROR_RATIO;
 
-    fprintf(stream, "%s", quantity_of(study, q)->name);
-    if (quantity_of(study, q)->of_fish) fprintf(stream, " of %s", study->study->school.fish[f].name);
+    // "steady_speed of follower over that of alone"
+    if (study->relation == ERROR_CHANGE) fprintf(stream, "difference");
+    if (study->relation != ERROR_CHANGE) fprintf(stream, "%s", quantity_of(study, q)->name);
+    const bool is_named = study->relation != ERROR_CHANGE && quantity_of(study, q)->of_fish;
+    const bool is_only = study->is_against && study->n_fish == 1;
+    if (is_named) fprintf(stream, " of %s", is_only ? study->values->name : study->values->school.fish[f].name);
+    if (study->is_against && !(is_named && is_only)) fprintf(stream, " in %s", study->values->name);
+    if (is_ratio) fprintf(stream, " over that of %s", error_plan_twin_name(study, f));
     if (isnan(value)) {
         fprintf(stream, ": unknown\n");
     } else if (isnan(error)) {
@@ -536,7 +550,12 @@ static void print_value(const struct error_study *study, int q, int f, FILE *str
     } else {
         const int decimals = decimals_for(error);
         fprintf(stream, ": %.*f +- %.*f%s%s", decimals, value, decimals, error, blank, unit);
-        if (fabs(value) > 0) fprintf(stream, " (%.2g %%)", 100 * error / fabs(value));
+        const int of_percent = decimals_for(100 * error);
+        if (is_ratio) {
+            fprintf(stream, " (%+.*f +- %.*f %%)", of_percent, 100 * (value - 1), of_percent, 100 * error);
+        } else if (study->relation == ERROR_VALUE && fabs(value) > 0) {
+            fprintf(stream, " (%.2g %%)", 100 * error / fabs(value));
+        }
         fprintf(stream, "\n");
     }
 
@@ -544,7 +563,12 @@ static void print_value(const struct error_study *study, int q, int f, FILE *str
     const struct error_study_model *const models[] = {&study->lowest[place], &study->highest[place]};
     if (isnan(value) || !study->study->error->models) return;
     for (int i = 0; i < 2; i++) {
-        fprintf(stream, "%s %.4g%s%s", i == 0 ? "other models: from" : " to", models[i]->value, blank, unit);
+        fprintf(stream, "%s ", i == 0 ? "other models: from" : " to");
+        if (is_ratio) {
+            fprintf(stream, "%+.2g %%", 100 * (models[i]->value - 1));
+        } else {
+            fprintf(stream, "%.4g%s%s", models[i]->value, blank, unit);
+        }
         if (models[i]->key < 0) continue;
         const struct error_study_key *const key = &study->key[models[i]->key];
         const char *const path = key->row->path + (strncmp(key->row->path, "fish.", 5) == 0 ? 5 : 0);
@@ -684,7 +708,8 @@ static void print_choices(const struct error_study *study, FILE *stream) {
 static void print_reasons(const struct error_study *study, const struct member_file *members, FILE *stream) {
     for (int k = 0; k < study->n_keys; k++) {
         const struct error_study_key *const key = &study->key[k];
-        if (key->n_levels == 1) fprintf(stream, "not varied: %s: %s\n", key->row->path, key->objection);
+        const bool is_known = study->relation != ERROR_VALUE && study->point->key[k].n_levels == 1;
+        if (key->n_levels == 1 && !is_known) fprintf(stream, "not varied: %s: %s\n", key->row->path, key->objection);
         if (key->n_levels == 1 || key->row->kind == SWEEP_MODEL) continue;
         for (int place = 0; place < study->n_asked * study->n_fish; place++) {
             const int q = place / study->n_fish, f = place % study->n_fish;
@@ -703,7 +728,7 @@ static void print_reasons(const struct error_study *study, const struct member_f
             if (is_objection) break;
         }
     }
-    for (int m = 0; m < sweep_n_members(study->study); m++) {
+    for (int m = 0; m < sweep_n_members(study->study) && study->relation == ERROR_VALUE; m++) {
         if (!member_file_is_complete(&members[m])) fprintf(stream, "member %d: %s\n", m, members[m].status);
     }
 }
@@ -719,8 +744,7 @@ static void print_points(const struct error_sweep *sweep, const struct member_fi
     add_key_columns(table, &sweep->study, axis, sweep->n_swept);
     if (n_shown > 1) table_column(table, "fish", NULL);
     for (int q = 0; q < first->n_asked; q++) {
-        const char *const unit = quantity_of(first, q)->unit;
-        table_column(table, short_name_of(first, q), strcmp(unit, "1") == 0 ? "" : unit);
+        table_column(table, short_name_of(first, q), unit_of(first, q));
         table_column(table, "error", NULL);
         table_column(table, "%", NULL);
         if (has_models) table_column(table, "other models", NULL);
@@ -773,6 +797,9 @@ static void print_points(const struct error_sweep *sweep, const struct member_fi
         fprintf(stream, "The first %d of %d fish; error.csv and study.nc have all.\n", n_shown, first->n_fish);
     }
 
+    // the notes on a sweep hold for its comparisons, too
+    if (first->relation != ERROR_VALUE) return;
+
     // a numerical key of the sweep has a value at every point, and no levels
     for (int c = 0; c < sweep->n_swept; c++) {
         const struct sweep_error_key *const row = sweep_error_find(axis->key[c].row);
@@ -792,11 +819,43 @@ static void print_points(const struct error_sweep *sweep, const struct member_fi
     }
 }
 
+/* Print ratios and differences of one point, with the shares of the keys in the ratios. */
+static void print_comparison(const struct error_sweep *sweep, const struct member_file *members, FILE *stream) {
+    const struct error_study *const ratio = &sweep->ratio->point[0], *const change = &sweep->change->point[0];
+    const struct error_study_next none = {.key = -1};
+    for (int f = 0; f < ratio->n_fish; f++) {
+        bool is_any = false;
+        for (int q = 0; q < ratio->n_asked; q++) {
+            const bool of_fish = quantity_of(ratio, q)->of_fish;
+            if ((f > 0 && !of_fish) || (of_fish && error_plan_twin_fish(ratio, f) < 0)) continue;
+            is_any = true;
+            print_value(ratio, q, f, stream);
+            print_value(change, q, f, stream);
+        }
+        if (is_any) print_shares(ratio, &none, f, stream);
+        if (is_any) fprintf(stream, "\n");
+    }
+    print_reasons(ratio, members, stream);
+
+    // the value of the other case, without the budget
+    const struct error_study *const against = sweep->against;
+    for (int i = 0; against && i < against->n_asked * against->n_fish; i++) {
+        const int q = i % against->n_asked, f = i / against->n_asked;
+        if (f == 0 || quantity_of(against, q)->of_fish) print_value(against, q, f, stream);
+    }
+}
+
 enum status study_print_errors(struct error_study *study, const struct member_file *members, FILE *stream) {
     if (study->sweep->n_swept > 0) {
         print_points(study->sweep, members, stream);
+        if (!study->sweep->twin) return STATUS_OK;
+        fprintf(stream, "\nRatios to %s:\n", error_plan_twin_name(&study->sweep->ratio->point[0], 0));
+        print_points(study->sweep->ratio, members, stream);
+        fprintf(stream, "\nDifferences from %s:\n", error_plan_twin_name(&study->sweep->change->point[0], 0));
+        print_points(study->sweep->change, members, stream);
         return STATUS_OK;
     }
+    if (study->sweep->twin) print_comparison(study->sweep, members, stream);
 
     const struct error_study_next next = convergence_study_next(study, members);
     const int n_shown = study->n_fish < MAX_FISH_SHOWN ? study->n_fish : MAX_FISH_SHOWN;
@@ -840,30 +899,25 @@ static void write_csv_row(const struct csv_row *row, const char *key, const char
     const struct error_study *const study = row->study;
     const struct sweep_axis *const axis = &row->sweep->study.sweep[0];
     const struct member_file_quantity *const quantity = quantity_of(study, row->q);
-    fprintf(row->file, "\"%s\",%s,%s,%.9g,%s,%s,%.3g,%.3g,%.3g,\"%s\"",
-            quantity->of_fish ? study->values->school.fish[row->f].name : "", quantity->name, quantity->unit, value,
-            key, levels, order, error, 100 * error / fabs(study->value[error_plan_place(study, row->q, row->f)]),
-            verdict);
+    const char *const word = error_relation_words[study->relation];
+    fprintf(row->file, "\"%s\",%s%s%s,%s,%.9g,%s,%s,%.3g,%.3g,%.3g,\"%s\"",
+            quantity->of_fish ? study->values->school.fish[row->f].name : "", word, *word ? "_" : "", quantity->name,
+            study->relation == ERROR_RATIO ? "1" : quantity->unit, value, key, levels, order, error,
+            100 * error / fabs(study->value[error_plan_place(study, row->q, row->f)]), verdict);
     for (int c = 0; c < row->sweep->n_swept; c++) {
         fprintf(row->file, ",%s", axis->value[study->base * axis->n_keys + c]);
     }
     fputs("\n", row->file);
 }
 
-enum status study_print_csv(const struct error_sweep *sweep, const char *path) {
-    const struct sweep_axis *const axis = &sweep->study.sweep[0];
-    struct plain_file table;
-    TRY(plain_file_open(&table, path, TARGET_TABLE, true, 0666));
-    FILE *const file = table.stream;
-    fputs(TARGET_TABLE_MARK, file);
-    for (int c = 0; c < sweep->n_swept; c++) fprintf(file, ",%s", axis->key[c].path);
-    fputs("\n", file);
-
+/* Write the rows of all points of a sweep, or of a comparison. */
+static void write_csv_rows(const struct error_sweep *sweep, FILE *file) {
     for (int p = 0; p < sweep->n_points; p++) {
         const struct error_study *const study = &sweep->point[p];
         for (int i = 0; i < study->n_fish * study->n_asked; i++) {
             const int q = i % study->n_asked, f = i / study->n_asked, place = error_plan_place(study, q, f);
-            if (f > 0 && !quantity_of(study, q)->of_fish) continue;
+            const bool of_fish = quantity_of(study, q)->of_fish, is_compared = study->relation != ERROR_VALUE;
+            if ((f > 0 && !of_fish) || (is_compared && of_fish && error_plan_twin_fish(study, f) < 0)) continue;
             const struct csv_row row = {file, sweep, study, q, f};
             write_csv_row(&row, "sum", "", study->value[place], NAN, study->error[place], "");
 
@@ -892,6 +946,19 @@ enum status study_print_csv(const struct error_sweep *sweep, const char *path) {
             }
         }
     }
+}
 
+enum status study_print_csv(const struct error_sweep *sweep, const char *path) {
+    const struct sweep_axis *const axis = &sweep->study.sweep[0];
+    struct plain_file table;
+    TRY(plain_file_open(&table, path, TARGET_TABLE, true, 0666));
+    FILE *const file = table.stream;
+    fputs(TARGET_TABLE_MARK, file);
+    for (int c = 0; c < sweep->n_swept; c++) fprintf(file, ",%s", axis->key[c].path);
+    fputs("\n", file);
+
+    write_csv_rows(sweep, file);
+    if (sweep->ratio) write_csv_rows(sweep->ratio, file);
+    if (sweep->change) write_csv_rows(sweep->change, file);
     return plain_file_close(&table, STATUS_OK);
 }

@@ -131,6 +131,48 @@ run error swimmer.yaml --of speed --no-confirm -o numerical --sweep time.sheddin
 check a_swept_numerical_key_is_named_as_missing_from_the_errors grep -qx \
     'time.shedding_interval is swept: the errors do not include it' out
 check a_swept_key_may_be_one_that_the_levels_set test "$code" = 0 -a -s numerical/study.nc -a -s numerical/error.csv
+
+# ---- comparisons: with another case, along a sweep, with another fish
+
+sed '/^error/d; s/name: fish/name: stiff/; s/modulus: 1e7/modulus: 2e7/' swimmer.yaml >stiff.yaml
+sed '/^error/d' swimmer.yaml >soft.yaml
+run error stiff.yaml --of speed --against soft.yaml --models -o compared
+check a_comparison_ends_with_0 test "$code" = 0
+check the_ratio_comes_first eval "sed -n '/ members, .the case. among/{n;p}' out |
+    grep -qE '^speed of stiff over that of soft: [0-9.]+ \+- [0-9.]+ \([+-][0-9.]+ \+- [0-9.]+ %\)\$'"
+check so_does_its_range grep -qE '^other models: from [+-][0-9.e-]+ % \([a-z_.]+ [a-z0-9.+]+\) to [+-]' out
+check the_difference_has_a_unit grep -qE '^difference: -?[0-9.]+ \+- [0-9.]+ m s-1$' out
+check both_values_follow eval 'grep -qE "^speed of soft: [0-9.]+ \+- " out && grep -qE "^speed of stiff: [0-9.]+ \+- " out'
+sed -n '/over that of/,$p' out >table
+run gather compared
+check gather_needs_the_members_only cmp out table
+run info compared/study.nc
+check the_file_is_enough_for_the_comparison cmp <(sed -n '/over that of/,$p' out) <(grep -v '^member .* warning: ' table)
+check the_ratio_of_the_file_is_that_of_the_members /usr/bin/python3 - <<'end'
+import csv, netCDF4
+study = netCDF4.Dataset("compared/study.nc")
+ratio = float(study["stated_ratio_speed"][0])
+names = {getattr(netCDF4.Dataset(f"compared/member-{m:04}.nc"), "title"): m for m in range(2)}
+own, other = (float(study["speed"][names[name], 0]) for name in ("stiff", "soft"))
+assert abs(ratio - own / other) < 1e-12 * ratio, (ratio, own, other)
+rows = [row for row in csv.DictReader(open("compared/error.csv")) if row["key"] == "sum"]
+assert [row["quantity"] for row in rows] == ["speed", "ratio_speed", "change_speed"], rows
+assert abs(float(rows[1]["error"]) / float(study["bar_ratio_speed"][0]) - 1) < 1e-2
+end
+run error soft.yaml --of speed --no-confirm -o along --sweep 'fish[*].body.modulus=1e7,2e7' --against first
+check along_a_sweep_ratios_have_a_table eval "grep -qx 'Ratios to point 0:' out && grep -qx 'Differences from point 0:' out"
+check the_ratio_along_a_sweep_is_that_of_the_cases /usr/bin/python3 -c "
+import netCDF4
+one, all = (netCDF4.Dataset(name + '/study.nc')['stated_ratio_speed'][:].ravel() for name in ('compared', 'along'))
+assert list(all) == [1, one[0]], (one, all)"
+refused a_case_or_a_point_or_a_fish 2 '--against 2e7: expects the file of a case, FISH=FISH' error soft.yaml --of speed --against 2e7
+refused no_such_point 2 'error.against: 3e7 is neither `first` nor a value of fish[*].body.modulus' \
+    error soft.yaml --of speed --sweep 'fish[*].body.modulus=1e7,2e7' --against 3e7
+refused no_such_case 4 'none.yaml: error: the case file cannot be read' error soft.yaml --of speed --against none.yaml
+printf 'format: 1\ntime: {end: 1}\nfish: [{nodes: 2}]\n' >wrong.yaml
+refused a_wrong_case_has_a_place 2 'wrong.yaml:3:16: error: fish[0].nodes: must be' error soft.yaml --of speed --against wrong.yaml
+{ cat soft.yaml; echo 'sweep: [{key: solver.order, values: [2, 3]}]'; } >swept.yaml
+refused one_case_not_a_sweep 2 'swept.yaml has a sweep: name one case' error soft.yaml --of speed --against swept.yaml
 mkdir parts
 run study swimmer.yaml --members 0-1 -o parts
 check a_part_of_the_members test -e parts/member-0001.nc -a ! -e parts/member-0002.nc -a ! -e parts/study.nc

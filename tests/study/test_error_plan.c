@@ -411,7 +411,7 @@ TEST(every_key_can_be_swept) {
                     text, arena_text(test_arena(), "%s=%s", path_of_key, p == 0 ? written(key, &values) : value), NULL,
                     NULL);
                 case_value_write(&was, key, case_table_field(key, &one, &one.school.fish[f]));
-                assert_string_equal(is.text, was.text);
+                if (strcmp(is.text, was.text) != 0) fail_msg("%s: %s is not %s", sweeps[0], is.text, was.text);
             }
             break;
         }
@@ -752,6 +752,116 @@ TEST(choices_of_the_model_are_not_in_the_sum) {
     NEAR(key_of(&study, "wake.smoothing")->part[0].error, 2.5 - study.value[0], 0, 1e-12);
     NEAR(study.error[0], 0, 1e-12, 0);
     contains(report_of(&study, members), "choices, not in the sum: wake.smoothing ([0.1] 0.05) ");
+}
+
+/* The members of a comparison: the errors of the other case are 0.9 times those of the case. */
+static const double share = 0.9;
+
+static struct member_file *make_twins(const struct error_study *study) {
+    struct member_file *const members = make_members(study);
+    const struct sweep_axis *const axis = &study->study->sweep[0];
+    for (int m = 0; m < sweep_n_members(study->study); m++) {
+        const double own = *member_file_place(&members[m], member_file_quantity_number("speed"), 0, 0);
+        if (axis->is_against[m]) set_value(&members[m], "speed", 0.5 * (speed + share * (own - speed)));
+    }
+    return members;
+}
+
+#define OTHER "against: {format: 1, name: other, time: {end: 4, shedding_interval: 0.01}, solver: {rtol: 1e-5}, "
+
+TEST(errors_that_both_cases_share_cancel_in_their_ratio) {
+    struct error_study study = open_study(
+        UNIFORM,
+        "{of: speed, keys: [nodes, sheet_points, shedding_interval], " OTHER
+        "fish: [{force: reactive, nodes: 49, sheet_points: 97, body: {profile: uniform, thickness: 0.2, depth: "
+        "0.25, modulus: 1e8}}]}}");
+    struct error_sweep *const sweep = study.sweep;
+    const struct error_study *const ratio = &sweep->ratio->point[0], *const change = &sweep->change->point[0];
+    assert_int_equal(sweep->n_points, 1);
+    assert_string_equal(error_plan_twin_name(ratio, 0), "other");
+
+    // every level has a twin with the same part of the value of the other case: 49/25 times the nodes
+    for (int k = 0; k < ratio->n_keys; k++) {
+        const struct error_study_key *const key = &ratio->key[k];
+        assert_int_equal(key->n_levels, 4);
+        for (int i = 0; i < 4; i++) {
+            const struct case_values own = member_of(study.study, key->member[i]),
+                                     other = member_of(study.study, key->twin[i]);
+            NEAR(other.school.fish[0].nodes, round(49 / 25.0 * own.school.fish[0].nodes), 0, 0);
+            NEAR(other.school.shedding_interval, own.school.shedding_interval, 0, 1e-12);
+            assert_string_equal(other.name, "other");
+            assert_string_equal(own.name, "uniform");
+        }
+    }
+    assert_int_equal(sweep_member_before(study.study, sweep->against->base), -1);
+
+    // the bar of the ratio is near the sum of the parts of the errors that differ, and covers the true error
+    struct member_file *const members = make_twins(&study);
+    convergence_sweep_judge(sweep, members);
+    const struct error_study *const point = &sweep->point[0];
+    const double true_error = fabs(ratio->value[0] - 2),
+                 apart = point->error[0] / point->value[0] + sweep->against->error[0] / sweep->against->value[0];
+    ABOVE(ratio->error[0], true_error);
+    BELOW(ratio->error[0], 0.2 * apart * ratio->value[0]);
+    NEAR(change->value[0], point->value[0] - sweep->against->value[0], 0, 1e-12);
+    ABOVE(change->error[0], fabs(change->value[0] - speed / 2));
+
+    // a failed twin leaves the ratio unknown, not the value
+    members[sweep->against->base].status = "failed: a test";
+    convergence_sweep_judge(sweep, members);
+    assert_true(isnan(ratio->error[0]) && isnan(ratio->value[0]));
+    ABOVE(point->error[0], 0);
+}
+
+TEST(a_point_of_a_sweep_or_another_fish_is_a_twin) {
+    const struct error_study first = open_study(
+        UNIFORM
+        "sweep: [{key: \"fish[*].body.modulus\", values: [1e7, 3e7]}, {key: \"fish[*].wave.amplitude\", values: "
+        "[0.1, 0.2, 0.3]}]\n",
+        "{of: speed, keys: [nodes], against: 30000000}");
+    const struct error_sweep *const sweep = first.sweep;
+    for (int p = 0; p < 6; p++) assert_int_equal(sweep->twin[p], 3 + p % 3);
+    struct member_file *const members = make_members(&first);
+    convergence_sweep_judge(first.sweep, members);
+    NEAR(sweep->ratio->point[4].value[0], 1, 0, 0);
+    NEAR(sweep->ratio->point[4].error[0], 0, 0, 0);
+
+    const struct error_study school =
+        open_study("format: 1\ntime: {end: 4}\nfish: [{name: leader}, {name: follower, start: {position: [3, 0]}}]\n",
+                   "{of: speed, keys: [nodes, rtol], against: follower=leader}");
+    const struct error_study *const ratio = &school.sweep->ratio->point[0];
+    assert_int_equal(error_plan_twin_fish(ratio, 0), -1);
+    assert_int_equal(error_plan_twin_fish(ratio, 1), 0);
+    assert_null(school.sweep->against);
+    for (int k = 0; k < ratio->n_keys; k++) {
+        for (int i = 0; i < ratio->key[k].n_levels; i++)
+            assert_int_equal(ratio->key[k].member[i], ratio->key[k].twin[i]);
+    }
+}
+
+TEST(what_cannot_be_compared_is_refused) {
+    static const struct {
+        const char *error, *message;
+    } examples[] = {
+        {"{of: speed, against: first}", "expects the file of a case"},
+        {"{of: speed, against: a=b}", "expects the names of two fish of this case"},
+        {"{of: speed, against: missing.yaml}", "missing.yaml: cannot be read"},
+        {"{of: speed, within: 0.1, " OTHER "fish: [{}]}}", "error.within: refines one case"},
+        {"{of: speed, " OTHER "fish: [{}, {start: {position: [9, 0]}}]}}", "other has more fish than the case"},
+        {"{of: steady_speed, " OTHER
+         "fish: [{wave: {amplitude: 0, frequency: 0}, motion: {prescribed: all, speed: 1}}]}}",
+         "other has no beat"},
+        {"{of: speed, " OTHER "fish: [{nodes: 2}]}}", "fish[0].nodes: must be"},
+    };
+    for (size_t i = 0; i < sizeof examples / sizeof *examples; i++) {
+        const char *const text = arena_text(test_arena(), UNIFORM "error: %s\n", examples[i].error);
+        struct error_sweep *sweep;
+        struct case_values values;
+        enum status status = case_parse(&values, text, strlen(text), "x.yaml", NULL, 0, NULL);
+        if (status == STATUS_OK) status = error_plan_create(test_arena(), &sweep, &values, NULL);
+        assert_int_equal(status, STATUS_CASE);
+        if (!strstr(status_message(), examples[i].message)) fail_msg("%s: %s", examples[i].error, status_message());
+    }
 }
 
 TEST(other_models_bound_the_value) {
