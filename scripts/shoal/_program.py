@@ -252,17 +252,27 @@ class Estimate(NamedTuple):
     unit: str  #: for example "m s-1"
     flags: list[str]  #: per flagged key, why the levels of the key are not accepted
     models: tuple[float, float] | None = None  #: lowest and highest value with other choices of the model
+    at: Mapping = {}  #: along a sweep, the swept keys with their values at this point; numbers where they are numbers
 
     def __str__(self):
         digits = max(0, 1 - int(np.floor(np.log10(self.error)))) if 0 < self.error < np.inf else 6
         number = f"{self.value:.{digits}f} ± {self.error:.{digits}f} {self.unit}"
         others = f"; other models: {self.models[0]:.4g} to {self.models[1]:.4g}" if self.models else ""
-        return f"{self.quantity}{' of ' + self.fish if self.fish else ''}: {number}{' (flagged)' if self.flags else ''}{others}"
+        where = "".join(f", {key} {value:g}" if isinstance(value, float) else f", {key} {value}" for key, value in self.at.items())
+        return f"{self.quantity}{' of ' + self.fish if self.fish else ''}{where}: {number}{' (flagged)' if self.flags else ''}{others}"
+
+
+def _number_or_text(text: str):
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
 def error(case, of, within: float | None = None, models: bool = False, against=None, assignments=None, path=None,
           overwrite: bool = False, processes: int | None = None, progress: bool | None = None, folder=None) -> list[Estimate]:
-    """Vary every numerical key of a case by `shoal error`; returns quantities with their error bars, per fish.
+    """Vary every numerical key of a case by `shoal error`; returns quantities with their error bars, per fish and, of a case
+    with a sweep, per point of the sweep, whose swept values are in `at`.
 
     of: a quantity or a list of quantities, as "steady_speed". within: refine until the relative errors are smaller.
     models: repeat the numbers with other choices of the model. against: the path of another case, "FISH=FISH", or along
@@ -278,10 +288,13 @@ def error(case, of, within: float | None = None, models: bool = False, against=N
     path = _run_study("error", case, assignments, path, overwrite, processes, progress, folder, options)
     found: dict = {}
     with open(os.path.join(path, "error.csv"), encoding="utf-8", newline="") as file:
-        for row in csv.DictReader(file):
-            place = row["fish"], row["quantity"]
+        rows = csv.DictReader(file)
+        swept = rows.fieldnames[rows.fieldnames.index("verdict") + 1:]
+        for row in rows:
+            at = {key: _number_or_text(row[key]) for key in swept}
+            place = row["fish"], row["quantity"], *at.values()
             if row["key"] == "sum":
-                found[place] = Estimate(*place, float(row["value"]), float(row["error"]), row["unit"], [])
+                found[place] = Estimate(*place[:2], float(row["value"]), float(row["error"]), row["unit"], [], at=at)
             elif row["key"] in ("lowest", "highest"):
                 found[place] = found[place]._replace(models=(found[place].models or ()) + (float(row["value"]),))
             elif row["verdict"] not in ("accepted", "differences are below the noise",

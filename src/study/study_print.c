@@ -905,7 +905,8 @@ static void write_csv_row(const struct csv_row *row, const char *key, const char
             study->relation == ERROR_RATIO ? "1" : quantity->unit, value, key, levels, order, error,
             100 * error / fabs(study->value[error_plan_place(study, row->q, row->f)]), verdict);
     for (int c = 0; c < row->sweep->n_swept; c++) {
-        fprintf(row->file, ",%s", axis->value[study->base * axis->n_keys + c]);
+        const char *const swept = axis->value[study->base * axis->n_keys + c];
+        fprintf(row->file, strchr(swept, ',') ? ",\"%s\"" : ",%s", swept);
     }
     fputs("\n", row->file);
 }

@@ -562,6 +562,20 @@ class Words(unittest.TestCase):
 class Programs(unittest.TestCase):
     """What the program does for the module."""
 
+    def test_errors_along_a_sweep_have_the_swept_values(self):
+        case = {"name": "swept", "time": {"end": 0.2, "shedding_interval": 0.1}, "error": {"keys": ["nodes"], "of": "speed"},
+                "fish": [{"name": "a", **SMALL, "nodes": 9}]}
+        axes = [{"key": "fish[*].body.modulus", "values": [1e6, 2e6]}, {"key": "fluid.velocity", "values": [[0, 0], [0.1, 0]]}]
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            found = shoal.error(case, "speed", against="first", assignments={"sweep": axes}, overwrite=True)
+        self.assertEqual([one.quantity for one in found], ["speed"] * 4 + ["ratio_speed"] * 4 + ["change_speed"] * 4)
+        places = [{"fish[*].body.modulus": modulus, "fluid.velocity": velocity} for modulus in (1e6, 2e6)
+                  for velocity in ("[0, 0]", "[0.1, 0]")]
+        self.assertEqual([one.at for one in found], 3 * places)
+        self.assertAlmostEqual(found[6].value, found[2].value / found[0].value, delta=1e-7)
+        self.assertIn("speed of a, fish[*].body.modulus 2e+06, fluid.velocity [0.1, 0]: ", str(found[3]))
+
     def test_a_case_is_checked(self):
         good = shoal.check(PAIR)
         self.assertIn("2 fish", good.summary)
