@@ -7,9 +7,7 @@
 #include "run/checkpoints.h"
 #include "school.h"
 
-const bool school_small = true;
-
-#define SCHOOL "time: {end: 1, shedding_interval: 0.02, checkpoint_interval: 0.2}\nfish: [{}]\n"
+#define SCHOOL "time: {end: 1, shedding_interval: 0.02, checkpoint_interval: 0.2}\nfish: [{nodes: 7}]\n"
 
 // the checkpoints of a run with places to write them, and the result at a path that no file has
 static enum status create(struct checkpoints *checkpoints, const struct case_values *values, const char *places) {

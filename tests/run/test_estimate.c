@@ -8,8 +8,6 @@
 #include "run/simulate.h"
 #include "school.h"
 
-const bool school_small = true;
-
 /* The sanitizers change the cost of a loop by its memory, so that the parts of a run no longer add up. An emulator
  * translates the first passes of a loop: a short measurement has no relation to a long run. scripts/platforms.sh sets
  * EMULATED. */
@@ -42,7 +40,7 @@ int __wrap_clock_gettime(clockid_t clock, struct timespec *now) {
     return 0;
 }
 
-#define FISH "fish: [{nodes: 5, sheet_points: 9}, {nodes: 5, sheet_points: 9, start: {position: [0, 3]}}]\n"
+#define FISH "fish: [{nodes: 5}, {nodes: 5, start: {position: [0, 3]}}]\n"
 
 static double processor_time(void) {
     struct timespec now;
@@ -98,7 +96,7 @@ TEST(every_event_is_as_costly_as_those_measured_after_the_first) {
     static const char text[] = "time: {end: 8, shedding_interval: 0.02}\nwake: {lifetime: 6}\n" FISH;
     counts_evaluations = 1;
     // time for a few events and for wakes that are made up
-    const struct estimate estimate = estimate_of(text, 0.14);
+    const struct estimate estimate = estimate_of(text, 0.1);
     counts_evaluations = 0;
     AT_LEAST(estimate.n_events, 3);
     AT_MOST(estimate.n_events, 12);  // in which the first, with more evaluations, would count
@@ -118,11 +116,13 @@ TEST(every_event_is_as_costly_as_those_measured_after_the_first) {
 
 TEST(a_long_wake_is_extrapolated_from_a_short_one) {
     NEEDS_TRUE_COSTS();
-    // 200,000 vortices, of which whole events cost seconds; and a direct sum, which grows with the square of the number
+    // 200,000 vortices, of which whole events cost seconds; and a direct sum, which grows with the square of the number.
+    // With finite span the first estimate is 2.4 times too low after 0.1 s
     static const char *const texts[] = {
-        "time: {end: 4000, shedding_interval: 0.02}\nwake: {lifetime: 4000}\nfish: [{nodes: 5, sheet_points: 9}]\n",
+        "time: {end: 4000, shedding_interval: 0.02}\nwake: {lifetime: 4000}\nfish: [{nodes: 5, pressure: {span: "
+        "infinite}}]\n",
         "time: {end: 200, shedding_interval: 0.02}\nwake: {lifetime: 200, tolerance: 0}\n"
-        "fish: [{nodes: 5, sheet_points: 9}]\n"};
+        "fish: [{nodes: 5}]\n"};
     for (int i = 0; i < 2; i++) {
         int agree = 0;
         for (int attempt = 0; attempt < ATTEMPTS && !agree; attempt++) {
@@ -193,7 +193,7 @@ TEST(the_samples_of_a_period_take_memory) {
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation = school_simulation_of(
             "time: {end: 1000, shedding_interval: 0.001}\nwake: {lifetime: 0.01, tolerance: 0}\n"
-            "fish: [{nodes: 5, sheet_points: 9, wave: {frequency: %s}}]\n",
+            "fish: [{nodes: 5, wave: {frequency: %s}}]\n",
             i == 0 ? "500" : "0.001");
         struct estimate estimate;
         school_ok(estimate_run(simulation, 0.05, &estimate));

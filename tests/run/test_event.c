@@ -9,9 +9,8 @@
 #include "school.h"
 #include "school/diagnostics_energy.h"
 
-const bool school_small = true;
-
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+#define SMALL TIME "defaults: {fish: {nodes: 7}}\n"
 
 TEST(events_are_at_the_multiples_that_a_decimal_names) {
     // 7 * 0.1 is not 0.7; the last interval is no short decimal, but a ratio
@@ -27,7 +26,8 @@ TEST(events_are_at_the_multiples_that_a_decimal_names) {
     int n_rounded = 0;
     for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
         struct simulation *const simulation = school_simulation_of(
-            "time: {end: %.17g, shedding_interval: %s}\nfluid: {density: 0}\nfish: [{wave: {amplitude: 0}}]\n",
+            "time: {end: %.17g, shedding_interval: %s}\nfluid: {density: 0}\nfish: [{nodes: 7, wave: {amplitude: "
+            "0}}]\n",
             100 * strtod(of[i].interval, NULL), of[i].interval);
         const struct school *const school = simulation->school;
         for (long n = 1; n <= 10000; n++) {
@@ -51,8 +51,8 @@ TEST(events_are_at_the_multiples_that_a_decimal_names) {
 }
 
 TEST(an_event_without_finite_velocities_is_final) {
-    const char *const texts[] = {TIME "fish: [{}]\n",
-                                 TIME "wake: {shedding: impulsive}\nsheet: {kutta: rate}\nfish: [{}]\n"};
+    const char *const texts[] = {SMALL "wake: {shedding: continuous}\nfish: [{}]\n",
+                                 SMALL "wake: {shedding: impulsive}\nsheet: {kutta: rate}\nfish: [{}]\n"};
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation = school_simulation(texts[i]);
         struct state *const s = simulation->state;
@@ -67,7 +67,7 @@ TEST(an_event_without_finite_velocities_is_final) {
 }
 
 TEST(one_vortex_is_released_at_every_event_with_what_was_shed) {
-    struct simulation *const simulation = school_simulation(TIME "fish: [{}]\n");
+    struct simulation *const simulation = school_simulation(SMALL "wake: {shedding: continuous}\nfish: [{}]\n");
     const struct fish *fish = simulation->school->fish;
     const struct wake *wake = &simulation->state->wake[0];
     const double *const y = simulation->state->y;
@@ -89,8 +89,8 @@ TEST(one_vortex_is_released_at_every_event_with_what_was_shed) {
 
 // at an event with both release and removal
 static void fields_are_continuous(const char *wake) {
-    struct simulation *const simulation =
-        school_simulation_of(TIME "wake: {%s}\nfish: [{}, {start: {position: [0.2, 0.5]}}]\n", wake);
+    struct simulation *const simulation = school_simulation_of(
+        SMALL "wake: {shedding: continuous, %s}\nfish: [{}, {start: {position: [0.2, 0.5]}}]\n", wake);
     school_run(simulation, 0.5);
     const double next = simulation->state->t + 0.02;
     school_ok(simulation->integrator->advance(simulation->solver, next, NULL));
@@ -126,11 +126,11 @@ TEST(fields_are_continuous_across_a_continuous_event) {
 }
 
 TEST(wake_holds_one_lifetime) {
-    struct simulation *const simulation = school_simulation(TIME "wake: {lifetime: 0.2}\nfish: [{}]\n");
+    struct simulation *const simulation = school_simulation(SMALL "wake: {lifetime: 0.2}\nfish: [{}]\n");
     for (int n = 1; n <= 30; n++) {
         school_ok(simulate_step(simulation));
-        // lifetime of ten intervals: the vortex released at 0.02 is removed at 0.22
-        assert_int_equal(simulation->state->wake[0].n_vortex, n <= 10 ? n : 10);
+        // lifetime of ten intervals: the marker released at the start is removed at 0.22
+        assert_int_equal(simulation->state->wake[0].n_vortex, n <= 10 ? n + 1 : 11);
     }
 }
 
@@ -146,7 +146,8 @@ TEST(the_largest_wake_of_a_run_is_known_before) {
                  {"shedding: impulsive, lifetime: 0.2", 10}};
     for (size_t i = 0; i < sizeof wakes / sizeof *wakes; i++) {
         struct simulation *const simulation = school_simulation_of(
-            TIME "solver: {rtol: 1e-2}\nwake: {%s}\nfish: [{nodes: 4, sheet_points: 5}]\n", wakes[i].wake);
+            TIME "solver: {rtol: 1e-2}\nwake: {%s}\nfish: [{nodes: 4, force: reactive, sheet_points: 5}]\n",
+            wakes[i].wake);
         const int spare = simulation->school->wake_spare;
         int most = simulation->state->wake[0].n_vortex;
         for (int n = 1; n <= 16; n++) {
@@ -164,7 +165,7 @@ TEST(the_largest_wake_of_a_run_is_known_before) {
 
 TEST(impulses_conserve_circulation_and_meet_kutta) {
     struct simulation *const simulation =
-        school_simulation(TIME "wake: {shedding: impulsive}\nfish: [{sheet_points: 11}]\n");
+        school_simulation(SMALL "wake: {shedding: impulsive}\nfish: [{sheet_points: 11}]\n");
     const struct fish *fish = simulation->school->fish;
     const struct state *s = simulation->state;
     // the event at t = 0 sheds a vortex too
@@ -189,7 +190,7 @@ TEST(impulses_conserve_circulation_and_meet_kutta) {
 
 TEST(impulses_by_rate_are_the_rate_times_the_interval) {
     struct simulation *const simulation =
-        school_simulation(TIME "wake: {shedding: impulsive}\nsheet: {kutta: rate}\nfish: [{sheet_points: 11}]\n");
+        school_simulation(SMALL "wake: {shedding: impulsive}\nsheet: {kutta: rate}\nfish: [{sheet_points: 11}]\n");
     const struct fish *fish = simulation->school->fish;
     struct state *const s = simulation->state;
     for (int n = 1; n <= 10; n++) {
@@ -207,9 +208,10 @@ TEST(impulses_by_rate_are_the_rate_times_the_interval) {
 }
 
 TEST(waypoints_advance_during_a_run) {
-    struct simulation *const simulation = school_simulation(
-        TIME
-        "fish: [{control: {law: heading, waypoints: [[-0.6, 0], [-0.8, 0.3], [-2, 2]], acceptance_radius: 0.25}}]\n");
+    struct simulation *const simulation =
+        school_simulation(SMALL
+                          "fish: [{start: {speed: 1}, control: {law: heading, waypoints: [[-0.6, 0], [-0.8, 0.3], [-2, "
+                          "2]], acceptance_radius: 0.25}}]\n");
     int before = 0;
     for (int n = 1; n <= 40; n++) {
         school_ok(simulate_step(simulation));
@@ -224,7 +226,7 @@ TEST(waypoints_advance_during_a_run) {
 
 TEST(averaged_heading_changes_the_bias_at_a_bounded_rate) {
     struct simulation *const simulation =
-        school_simulation(TIME "fish: [{control: {law: averaged_heading, desired_heading: 90, rate: 1.5}}]\n");
+        school_simulation(SMALL "fish: [{control: {law: averaged_heading, desired_heading: 90, rate: 1.5}}]\n");
     const int phi0 = simulation->school->fish[0].at.phi0;
     double before = simulation->state->y[phi0], largest = 0;
     NEAR(before, 0, 0, 0);
@@ -245,7 +247,7 @@ TEST(samples_of_the_power_begin_again_where_the_bias_kinks) {
     static const char *const laws[] = {"none", "averaged_heading"};
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation =
-            school_simulation_of(TIME "fish: [{control: {law: %s}, start: {heading: 170}}]\n", laws[i]);
+            school_simulation_of(SMALL "fish: [{control: {law: %s}, start: {heading: 170}}]\n", laws[i]);
         for (int n = 1; n <= 5; n++) {
             school_ok(simulate_step(simulation));
             const struct state *const now = simulation->state;
@@ -262,7 +264,7 @@ TEST(samples_of_the_power_begin_again_where_the_bias_kinks) {
 static void turn_with_feedforward(const char *modulus, const char *solver, double place[14], double *phi0) {
     struct simulation *const simulation = school_simulation_of(
         "time: {end: 1, shedding_interval: 0.02}\nsolver: {%s}\nfluid: {velocity: [0.3, 0.2], shear: 2}\n"
-        "fish: [{body: {modulus: %s},\n"
+        "fish: [{nodes: 7, force: reactive, body: {modulus: %s},\n"
         "        control: {law: heading, desired_heading: 160, filter: 0.1, feedforward: 200}}]\n",
         solver, modulus);
     school_run(simulation, 0.3);
@@ -286,7 +288,6 @@ TEST(feedforward_does_not_depend_on_the_integrator) {
 
 TEST(a_fish_reaches_its_waypoints) {
     struct simulation *const simulation = school_simulation(
-        SCHOOL_DEFAULTS
         "time: {end: 30, shedding_interval: 0.02}\nfish: [{control: {waypoints: [[-4, 1], [-8, -1], [-12, 0]]}}]\n");
     const struct state *s = simulation->state;
     assert_int_equal(simulation->school->fish[0].control.law, CONTROL_COURSE);
@@ -301,10 +302,10 @@ TEST(vortices_of_the_case_meet_the_fish) {
     static const char *const fish[] = {"nodes: 9, force: pressure, pressure: {span: infinite}", "force: published"};
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation =
-            school_simulation_of("%s" TIME
+            school_simulation_of(SMALL
                                  "wake: {%slifetime: 10, decay: 0, vortices: [[-1, 0.5, 0.02], [-1, -0.5, -0.03]]}\n"
                                  "fish: [{%s}]\n",
-                                 i == 0 ? SCHOOL_DEFAULTS : "", wakes[i], fish[i]);
+                                 wakes[i], fish[i]);
         const struct wake *const wake = &simulation->state->wake[0];
         const double circulation[] = {0.02, -0.03};
         for (int n = 0; n < 20; n++) {

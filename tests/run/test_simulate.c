@@ -12,9 +12,8 @@
 #include "school.h"
 #include "solver/sundials.h"
 
-const bool school_small = true;
-
 #define TIME "time: {end: 0.5, shedding_interval: 0.02}\n"
+#define SMALL TIME "defaults: {fish: {nodes: 7}}\n"
 #define TIGHT "solver: {rtol: 1.0e-8, order: 2, coupling_distance: 100}\n"
 
 // nose, tail, circulation shed and newest vortex of a fish
@@ -49,22 +48,22 @@ static void same(const struct outcome *got, const struct outcome *want) {
 }
 
 #define LEFT "{name: a, body: {modulus: 1.0e+5}}"
-#define RIGHT                                                                                                        \
-    "{name: b, nodes: 6, sheet_points: 15, length: 0.8, start: {position: [0.2, 0.5], heading: 170}, wave: {phase: " \
+#define RIGHT                                                                                      \
+    "{name: b, nodes: 6, length: 0.8, start: {position: [0.2, 0.5], heading: 170}, wave: {phase: " \
     "60}}"
 
 TEST(order_of_the_fish_does_not_matter) {
     struct outcome one[2], other[2];
-    outcomes_of(TIME TIGHT "fish: [" LEFT ", " RIGHT "]\n", 2, one);
-    outcomes_of(TIME TIGHT "fish: [" RIGHT ", " LEFT "]\n", 2, other);
+    outcomes_of(SMALL TIGHT "fish: [" LEFT ", " RIGHT "]\n", 2, one);
+    outcomes_of(SMALL TIGHT "fish: [" RIGHT ", " LEFT "]\n", 2, other);
     same(&one[0], &other[1]);
     same(&one[1], &other[0]);
 }
 
 TEST(a_shift_of_the_start_shifts_the_run) {
     struct outcome at_origin, elsewhere;
-    outcomes_of(TIME TIGHT "fish: [{body: {modulus: 1.0e+5}}]\n", 1, &at_origin);
-    outcomes_of(TIME TIGHT "fish: [{body: {modulus: 1.0e+5}, start: {position: [3, -7]}}]\n", 1, &elsewhere);
+    outcomes_of(SMALL TIGHT "fish: [{body: {modulus: 1.0e+5}}]\n", 1, &at_origin);
+    outcomes_of(SMALL TIGHT "fish: [{body: {modulus: 1.0e+5}, start: {position: [3, -7]}}]\n", 1, &elsewhere);
     double *const moved[] = {elsewhere.nose, elsewhere.tail, elsewhere.vortex};
     for (int i = 0; i < 3; i++) {
         moved[i][0] -= 3;
@@ -75,12 +74,12 @@ TEST(a_shift_of_the_start_shifts_the_run) {
 
 TEST(a_turn_of_everything_turns_the_run) {
     struct outcome one[2], turned[2];
-    outcomes_of(TIME TIGHT
+    outcomes_of(SMALL TIGHT
                 "fluid: {velocity: [0.1, 0.05]}\n"
                 "fish: [{control: {law: heading, desired_heading: 160}}, {start: {position: [0.3, 0.6]}}]\n",
                 2, one);
     // by 90 degrees to the left: (x, y) becomes (-y, x)
-    outcomes_of(TIME TIGHT
+    outcomes_of(SMALL TIGHT
                 "fluid: {velocity: [-0.05, 0.1]}\n"
                 "fish: [{start: {heading: 270}, control: {law: heading, desired_heading: 250}},\n"
                 "  {start: {position: [-0.6, 0.3], heading: 270}}]\n",
@@ -98,13 +97,13 @@ TEST(a_turn_of_everything_turns_the_run) {
 
 TEST(the_mirror_image_of_a_case_runs_as_the_mirror_image) {
     struct outcome one[2], mirrored[2];
-    outcomes_of(TIME TIGHT
+    outcomes_of(SMALL TIGHT
                 "fluid: {velocity: [0.1, 0.05], shear: 0.2}\nfish: [{control: {law: heading, desired_heading: 160}},\n"
                 "  {start: {position: [0.3, 0.6], heading: 170}, control: {bias: 0.2}}]\n",
                 2, one);
     // y becomes -y: the wave is half a beat on, angles, bias and shear change sign
     outcomes_of(TIME TIGHT
-                "fluid: {velocity: [0.1, -0.05], shear: -0.2}\ndefaults: {fish: {wave: {phase: 180}}}\n"
+                "fluid: {velocity: [0.1, -0.05], shear: -0.2}\ndefaults: {fish: {nodes: 7, wave: {phase: 180}}}\n"
                 "fish: [{control: {law: heading, desired_heading: 200}},\n"
                 "  {start: {position: [0.3, -0.6], heading: 190}, control: {bias: -0.2}}]\n",
                 2, mirrored);
@@ -119,22 +118,22 @@ TEST(the_mirror_image_of_a_case_runs_as_the_mirror_image) {
 
 TEST(fish_far_apart_swim_as_if_alone) {
     struct outcome alone, pair[2];
-    outcomes_of(TIME TIGHT "fish: [{}]\n", 1, &alone);
-    outcomes_of(TIME TIGHT "fish: [{}, {start: {position: [0, 1.0e+5]}}]\n", 2, pair);
+    outcomes_of(SMALL TIGHT "fish: [{}]\n", 1, &alone);
+    outcomes_of(SMALL TIGHT "fish: [{}, {start: {position: [0, 1.0e+5]}}]\n", 2, pair);
     same(&pair[0], &alone);
 }
 
 TEST(two_runs_of_one_case_have_the_same_bits) {
     struct outcome one[2], other[2];
-    outcomes_of(TIME "fish: [" LEFT ", " RIGHT "]\n", 2, one);
-    outcomes_of(TIME "fish: [" LEFT ", " RIGHT "]\n", 2, other);
+    outcomes_of(SMALL "fish: [" LEFT ", " RIGHT "]\n", 2, one);
+    outcomes_of(SMALL "fish: [" LEFT ", " RIGHT "]\n", 2, other);
     assert_memory_equal(one, other, sizeof one);
 }
 
 TEST(an_uncoupled_jacobian_gives_the_same_run) {
     struct outcome one[2], other[2];
-    outcomes_of(TIME TIGHT "fish: [" LEFT ", " RIGHT "]\n", 2, one);
-    outcomes_of(TIME "solver: {rtol: 1.0e-8, coupling_distance: 0}\nfish: [" LEFT ", " RIGHT "]\n", 2, other);
+    outcomes_of(SMALL TIGHT "fish: [" LEFT ", " RIGHT "]\n", 2, one);
+    outcomes_of(SMALL "solver: {rtol: 1.0e-8, coupling_distance: 0}\nfish: [" LEFT ", " RIGHT "]\n", 2, other);
     same(&other[0], &one[0]);
     same(&other[1], &one[1]);
 }
@@ -144,8 +143,8 @@ TEST(places_are_second_order_in_the_shedding_interval) {
     const char *const intervals[] = {"0.02", "0.01", "0.005"};
     for (int i = 0; i < 3; i++) {
         struct simulation *const simulation = school_simulation_of(
-            "time: {end: 0.8, shedding_interval: %s}\nsolver: {rtol: 1.0e-10, order: 5}\nfish: [{body: {modulus: "
-            "1.0e+5}}]\n",
+            "time: {end: 0.8, shedding_interval: %s}\nsolver: {rtol: 1.0e-10, order: 5}\n"
+            "wake: {shedding: continuous}\nfish: [{nodes: 7, force: published, body: {modulus: 1.0e+6}}]\n",
             intervals[i]);
         school_run(simulation, 0.8);
         const struct fish *fish = simulation->school->fish;
@@ -165,9 +164,9 @@ TEST(places_are_second_order_in_the_shedding_interval) {
 TEST(positive_bias_turns_right) {
     double heading[2];
     for (int i = 0; i < 2; i++) {
-        struct simulation *const simulation =
-            school_simulation(i == 0 ? "time: {end: 3, shedding_interval: 0.02}\nfish: [{control: {bias: 0.5}}]\n"
-                                     : "time: {end: 3, shedding_interval: 0.02}\nfish: [{control: {bias: -0.5}}]\n");
+        struct simulation *const simulation = school_simulation(
+            i == 0 ? "time: {end: 3, shedding_interval: 0.02}\nfish: [{nodes: 7, control: {bias: 0.5}}]\n"
+                   : "time: {end: 3, shedding_interval: 0.02}\nfish: [{nodes: 7, control: {bias: -0.5}}]\n");
         school_measure(simulation, 3);
         heading[i] = simulation->diagnostics->fish[0].heading;
     }
@@ -207,13 +206,13 @@ static const char *read_attribute(const char *path, const char *name) {
 TEST(notes_of_a_run_count_the_vortices_of_all_fish) {
     const char *const path = *state;
     const struct simulate_options options = {.path = path, .overwrite = 1, .command = "test"};
-    run_into(TIME "wake: {merge: 0.01}\nfish: [{}, {start: {position: [0, 2]}}, {start: {position: [0, 4]}}]\n",
+    run_into(SMALL "wake: {merge: 0.01}\nfish: [{}, {start: {position: [0, 2]}}, {start: {position: [0, 4]}}]\n",
              &options, STATUS_OK);
-    // 25 events of three fish
+    // a marker at the start and at 25 events, of three fish
     assert_string_equal(read_attribute(path, "merged_vortices"),
-                        "0 merged with a neighbour; 75 vortices in the wakes at the end");
+                        "0 merged with a neighbour; 78 vortices in the wakes at the end");
     // nothing is said of what does not happen
-    run_into(TIME "fish: [{}]\n", &options, STATUS_OK);
+    run_into(SMALL "fish: [{}]\n", &options, STATUS_OK);
     const char *const none = read_attribute(path, "merged_vortices");
     assert_int_equal(strspn(none, " "), strlen(none));
 }
@@ -229,7 +228,7 @@ TEST(the_times_of_checkpoints_are_a_list_in_the_result) {
     const char *const path = *state;
     const struct simulate_options options = {
         .path = path, .overwrite = 1, .command = "test", .checkpoint_at = "0.04,0.1,0.5"};
-    run_into(TIME "fish: [{}]\n", &options, STATUS_OK);
+    run_into(SMALL "fish: [{}]\n", &options, STATUS_OK);
     assert_string_equal(read_attribute(path, "checkpoint_at"), "0.04,0.1,0.5");
     unlink(checkpoint_of(path, ""));
     unlink(checkpoint_of(path, ".previous"));
@@ -240,7 +239,7 @@ TEST(a_run_tells_its_progress_at_every_event) {
     const struct simulate_options options = {
         .path = path, .overwrite = 1, .command = "test", .progress = count_progress};
     n_told = 0;
-    run_into(TIME "fish: [{}]\n", &options, STATUS_OK);
+    run_into(SMALL "fish: [{}]\n", &options, STATUS_OK);
     assert_int_equal(n_told, 25);
     assert_int_equal(access(path, R_OK), 0);
 }
@@ -286,12 +285,12 @@ TEST(the_wake_is_written_at_its_own_interval_and_at_the_end) {
     const struct simulate_options options = {.path = path, .overwrite = 1, .command = "test"};
     run_into(
         "time: {end: 0.28, shedding_interval: 0.02, output_interval: 0.08}\noutput: {wake_interval: 0.16}\nfish: "
-        "[{}]\n",
+        "[{nodes: 7}]\n",
         &options, STATUS_OK);
     // rows at 0, 0.08, 0.16, 0.24 and at the end, which is on neither interval
     int n_vortices[5], holds_wake[5];
     read_wake(path, n_vortices, holds_wake);
-    const int count[] = {0, 4, 8, 12, 14}, held[] = {0, 0, 1, 0, 1};
+    const int count[] = {1, 5, 9, 13, 15}, held[] = {1, 0, 1, 0, 1};
     assert_memory_equal(n_vortices, count, sizeof count);
     assert_memory_equal(holds_wake, held, sizeof held);
 }
@@ -304,9 +303,9 @@ static void stop_at_the_fifth(const struct simulate_progress *progress, void *da
 
 // also after the equations were created again, at a checkpoint: within the sums of the gradients, which are then zero
 TEST(a_signal_ends_a_jacobian) {
-    struct simulation *const simulation = school_simulation(SCHOOL_DEFAULTS
-                                                            "time: {end: 1, shedding_interval: 0.02}\n"
-                                                            "fish: [{}, {start: {position: [0, 1]}}]\n");
+    struct simulation *const simulation = school_simulation(
+        "time: {end: 1, shedding_interval: 0.02}\n"
+        "fish: [{}, {start: {position: [0, 1]}}]\n");
     const struct school *const school = simulation->school;
     stop = 0;
     simulation->stop = &stop;
@@ -327,12 +326,12 @@ TEST(a_signal_stops_a_run_at_the_next_event) {
     const struct simulate_options options = {
         .path = *state, .overwrite = 1, .command = "test", .progress = stop_at_the_fifth, .stop = &stop};
     stop = 0;
-    run_into(TIME "fish: [{}]\n", &options, STATUS_STOPPED);
+    run_into(SMALL "fish: [{}]\n", &options, STATUS_STOPPED);
     assert_non_null(strstr(status_message(), "t = 0.1"));
 }
 
 TEST(a_result_with_only_the_previous_checkpoint_is_unfinished_too) {
-    const char *const text = TIME "fish: [{}]\n";
+    const char *const text = SMALL "fish: [{}]\n";
     char path[128], previous[128];
     strcpy(path, checkpoint_of(*state, ""));
     strcpy(previous, checkpoint_of(*state, ".previous"));
@@ -376,7 +375,7 @@ TEST(wall_time_of_a_resumed_run_continues) {
     struct simulate_options options = {
         .path = *state, .overwrite = 1, .command = "test", .progress = take_a_tenth_of_a_second, .stop = &stop};
     stop = 0;
-    run_into(TIME "fish: [{}]\n", &options, STATUS_STOPPED);
+    run_into(SMALL "fish: [{}]\n", &options, STATUS_STOPPED);
     ABOVE(wall_time, 0.1);
     stop = 0;
     options.progress = note_the_first;
@@ -395,7 +394,7 @@ int __wrap_KINSol(void *kinsol, N_Vector solution, int strategy, N_Vector soluti
 }
 
 TEST(a_signal_within_the_event_of_a_run_leads_back_to_the_last_one) {
-    static const char text[] = TIME "wake: {shedding: impulsive}\nfish: [{}]\n";
+    static const char text[] = SMALL "wake: {shedding: impulsive}\nfish: [{}]\n";
     const char *const path = checkpoint_of(*state, "");
     struct simulation *const undisturbed = school_simulation(text);
     // three solutions at the start, two at each event: in the first and in the second one of the third and fourth event
@@ -420,7 +419,7 @@ TEST(a_signal_during_the_start_leaves_nothing) {
     unlink(path);
     stop = 0;
     n_until_signal = 1;
-    run_into(TIME "wake: {shedding: sheet}\nfish: [{}]\n", &options, STATUS_STOPPED);
+    run_into(SMALL "wake: {shedding: sheet}\nfish: [{}]\n", &options, STATUS_STOPPED);
     n_until_signal = -1;
     assert_non_null(strstr(status_message(), "stopped by a signal during the event at t = 0"));
     assert_int_equal(access(path, F_OK), -1);
@@ -429,7 +428,7 @@ TEST(a_signal_during_the_start_leaves_nothing) {
 TEST(a_failing_run_says_when_and_keeps_its_file) {
     const char *const path = *state;
     const struct simulate_options options = {.path = path, .overwrite = 1, .command = "test"};
-    run_into(TIME "solver: {max_steps: 1}\nfish: [{}]\n", &options, STATUS_SOLVER);
+    run_into(SMALL "solver: {max_steps: 1}\nfish: [{}]\n", &options, STATUS_SOLVER);
     assert_non_null(strstr(status_message(), "t = "));
     assert_non_null(strstr(status_message(), "solver.max_steps"));
     assert_int_equal(access(path, R_OK), 0);
@@ -440,10 +439,10 @@ TEST(a_run_that_diverges_ends_with_its_last_finite_row) {
     const struct simulate_options options = {.path = path, .overwrite = 1, .command = "test"};
 
     // one event a beat: the wake grows by some orders of magnitude at each event, up to the largest double
-    run_into(SCHOOL_DEFAULTS
-             "time: {end: 0.9, shedding_interval: 0.02, output_interval: 0.02}\n"
-             "fish: [{wave: {amplitude: 0}, motion: {prescribed: all, heave: 0.7, frequency: 50}}]\n",
-             &options, STATUS_SOLVER);
+    run_into(
+        "time: {end: 0.9, shedding_interval: 0.02, output_interval: 0.02}\n"
+        "fish: [{wave: {amplitude: 0}, motion: {prescribed: all, heave: 0.7, frequency: 50}}]\n",
+        &options, STATUS_SOLVER);
     assert_non_null(strstr(status_message(), "has diverged at t = 0."));
     assert_non_null(strstr(read_attribute(path, "run_status"), "failed: the run has diverged"));
     assert_non_null(strstr(read_attribute(path, "warnings"), "fish1 has diverged: at t = "));
@@ -497,7 +496,7 @@ enum status __wrap_fish_school_create(struct arena *parent, struct school **scho
 TEST(a_result_that_cannot_be_written_is_told_before_the_start) {
     const char *const places[][2] = {{*state, "exists"}, {"/no/folder/run.nc", "there is no folder"}};
     struct case_values values;
-    const char *const text = "format: 1\n" TIME "fish: [" LEFT "]\n";
+    const char *const text = "format: 1\n" SMALL "fish: [" LEFT "]\n";
     assert_int_equal(case_parse(&values, text, strlen(text), "case", NULL, 0, NULL), STATUS_OK);
     for (int i = 0; i < 2; i++) {
         const struct simulate_options options = {.path = places[i][0], .overwrite = 0, .command = "test"};
@@ -513,11 +512,10 @@ TEST(a_limp_fish_swims_on) {
     // the body bends back and forth: the tail overtakes the markers
     static const char *const forces[] = {"reactive", "pressure"};
     for (int i = 0; i < 2; i++) {
-        struct simulation *const simulation =
-            school_simulation_of(SCHOOL_DEFAULTS
-                                 "time: {end: 26, shedding_interval: 0.02, output_interval: 0.02}\n"
-                                 "fish: [{force: %s, nodes: 17, body: {modulus: 1e4}, start: {speed: 0.3}}]\n",
-                                 forces[i]);
+        struct simulation *const simulation = school_simulation_of(
+            "time: {end: 26, shedding_interval: 0.02, output_interval: 0.02}\n"
+            "fish: [{force: %s, nodes: 17, body: {modulus: 1e4}, start: {speed: 0.3}}]\n",
+            forces[i]);
         school_measure(simulation, 26);
         const double speed = simulation->diagnostics->fish[0].speed;
         ABOVE(speed, 0.01);

@@ -6,52 +6,57 @@
 #include "school.h"
 #include "state/state.h"
 
-const bool school_small = true;
-
 /* A short lifetime, so that vortices decay and are removed too. */
 #define TIME "time: {end: 1, shedding_interval: 0.02}\n"
-#define BOTH "fish: [{name: a}, {name: b, nodes: 6, sheet_points: 15, length: 0.8, start: {position: [0.2, 0.5]}}]\n"
+#define SMALL TIME "defaults: {fish: {nodes: 7}}\n"
+#define BOTH "fish: [{name: a}, {name: b, nodes: 6, length: 0.8, start: {position: [0.2, 0.5]}}]\n"
+// so soft that explicit methods follow it
+#define SOFT                                                                                          \
+    "fish: [{name: a, body: {modulus: 2e3}}, {name: b, nodes: 6, length: 0.8, body: {modulus: 2e3}, " \
+    "start: {position: [0.2, 0.5]}}]\n"
 #define STEERED(law)                                                             \
-    "fish: [{control: {law: " law                                                \
+    "fish: [{force: reactive, control: {law: " law                               \
     ", desired_heading: 160}, wave: {frequency: 20}}, {start: {position: [0.3, " \
     "0.6]}}]\n"
 
 static const char *const cases[] = {
     // methods
-    TIME "wake: {lifetime: 0.1}\n" BOTH,
-    TIME "solver: {order: 5, rtol: 1e-6}\n" BOTH,
-    TIME "solver: {method: euler, step: 0.001}\n" BOTH,
-    TIME "solver: {method: euler}\n" BOTH,
-    TIME "solver: {method: heun}\n" BOTH,
-    TIME "solver: {method: rk4, step: 0.002}\n" BOTH,
-    TIME "solver: {method: rk4}\n" BOTH,
-    TIME "solver: {method: dormand_prince}\nwake: {lifetime: 0.1}\n" BOTH,
-    TIME "solver: {method: implicit_euler, step: 0.001}\n" BOTH,
-    TIME "solver: {method: trapezoid, step: 0.001}\nwake: {lifetime: 0.1}\n" BOTH,
+    SMALL "wake: {lifetime: 0.1}\n" BOTH,
+    SMALL "solver: {order: 5, rtol: 1e-6}\n" BOTH,
+    SMALL "solver: {method: euler, step: 0.001}\n" SOFT,
+    SMALL "solver: {method: euler}\n" SOFT,
+    SMALL "solver: {method: heun}\n" SOFT,
+    SMALL "solver: {method: rk4, step: 0.002}\n" SOFT,
+    SMALL "solver: {method: rk4}\n" SOFT,
+    SMALL "solver: {method: dormand_prince}\nwake: {lifetime: 0.1}\n" SOFT,
+    SMALL "solver: {method: implicit_euler, step: 0.001}\n" BOTH,
+    SMALL "solver: {method: trapezoid, step: 0.001}\nwake: {lifetime: 0.1}\n" BOTH,
     // shedding
-    TIME "wake: {shedding: impulsive, lifetime: 0.1}\n" BOTH,
-    TIME "wake: {shedding: impulsive}\nsheet: {kutta: rate}\n" BOTH,
-    TIME "wake: {shedding: sheet, lifetime: 0.1}\n" BOTH,
-    TIME "wake: {shedding: sheet}\nsolver: {method: dormand_prince}\n" BOTH,
-    TIME "wake: {decay: 0.05, lifetime: 0.1, removed_circulation: dropped}\nsheet: {kutta: rate}\n" BOTH,
+    SMALL "wake: {shedding: impulsive, lifetime: 0.1}\n" BOTH,
+    SMALL "wake: {shedding: impulsive}\nsheet: {kutta: rate}\n" BOTH,
+    SMALL "wake: {shedding: continuous, lifetime: 0.1}\n" BOTH,
+    SMALL "solver: {method: dormand_prince}\n" SOFT,
+    SMALL
+    "wake: {shedding: continuous, decay: 0.05, lifetime: 0.1, removed_circulation: dropped}\nsheet: {kutta: "
+    "rate}\n" BOTH,
     TIME "preset: published\n" BOTH,
     // wake sums, variable coupling, threads
-    TIME "wake: {tolerance: 0}\n" BOTH,
-    TIME "wake: {tolerance: 1e-3}\nsolver: {threads: 2}\n" BOTH,
-    TIME
+    SMALL "wake: {tolerance: 0}\n" BOTH,
+    SMALL "wake: {tolerance: 1e-3}\nsolver: {threads: 2}\n" BOTH,
+    SMALL
     "solver: {coupling_distance: 0.2}\nfish: [{start: {speed: 2}}, {start: {position: [-0.6, 0.2], heading: 0}}]\n",
     // control, prescribed motion, other forces and fluids
-    TIME STEERED("heading, feedforward: 1"),
-    TIME STEERED("averaged_heading"),
-    TIME STEERED("course"),
-    TIME "fish: [{control: {law: heading, waypoints: [[-0.1, 0], [-3, 1]]}, wave: {frequency: 20}}]\n",
-    TIME
+    SMALL STEERED("heading, feedforward: 1"),
+    SMALL STEERED("averaged_heading"),
+    SMALL STEERED("course"),
+    SMALL "fish: [{control: {law: heading, waypoints: [[-0.1, 0], [-3, 1]]}, wave: {frequency: 20}}]\n",
+    SMALL
     "fluid: {velocity: [0.1, 0], shear: 0.3, gust: {amplitude: 0.2, frequency: 3}}\n"
     "fish: [{motion: {prescribed: head, heave: 0.1, frequency: 2}, force: reactive, load: {tip: [0.1, 0]}}]\n",
-    TIME
+    SMALL
     "fluid: {velocity: [0.1, 0], gust: {profile: sine, amplitude: 0.2, wavelength: 0.6}}\n"
-    "wake: {shedding: sheet, street: {vortices: 5, spacing: 0.4, circulation: 0.1}}\nsheet: {curve: smooth}\n"
-    "fish: [{force: pressure, pressure: {span: infinite}}]\n",
+    "wake: {street: {vortices: 5, spacing: 0.4, circulation: 0.1}}\n"
+    "fish: [{pressure: {span: infinite}}]\n",
 };
 enum { N_CASES = sizeof cases / sizeof *cases, N_BEFORE = 8, N_AFTER = 6 };
 
@@ -100,7 +105,7 @@ TEST(a_large_school_goes_on_with_the_same_bits_on_other_threads) {
     for (int k = 0; k < 2; k++) {
         int used = snprintf(text[k], sizeof text[k],
                             TIME
-                            "wake: {shedding: sheet}\nsolver: {threads: %d}\n"
+                            "solver: {threads: %d}\n"
                             "defaults: {fish: {nodes: 7, sheet_points: 120}}\nfish:\n",
                             k + 1);
         for (int f = 0; f < MANY; f++) {
