@@ -4,11 +4,9 @@
 #include "school.h"
 #include "school/rigid.h"
 
-const bool school_small = true;
-
 static const char *const text =
     "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
-    "fish: [{}, {start: {position: [2, 1], heading: 70}}]\n";
+    "defaults: {fish: {nodes: 7}}\nfish: [{}, {start: {position: [2, 1], heading: 70}}]\n";
 
 static void set_up(struct setup *setup) {
     school_build(setup, text);
@@ -96,10 +94,9 @@ TEST(a_vortex_lies_where_the_tail_of_a_turning_fish_would_have_left_it) {
 
 // places turn about the centre of mass and are displaced, all other vectors turn
 TEST(every_vector_of_the_past_turns_with_the_fish) {
-    struct simulation *const simulation =
-        school_simulation(SCHOOL_DEFAULTS
-                          "time: {end: 3, shedding_interval: 0.05}\nfluid: {velocity: [0.4, -0.2], shear: 0.3}\n"
-                          "fish: [{force: reactive, nodes: 5, sheet_points: 17, start: {speed: 0.5}}]\n");
+    struct simulation *const simulation = school_simulation(
+        "time: {end: 3, shedding_interval: 0.05}\nfluid: {velocity: [0.4, -0.2], shear: 0.3}\n"
+        "fish: [{force: reactive, nodes: 5, sheet_points: 17, start: {speed: 0.5}}]\n");
     school_run(simulation, 0.5);
     const struct history *const history = &simulation->state->history[0];
     struct sample before[16];
@@ -154,7 +151,6 @@ TEST(means_over_the_last_period_do_not_notice_a_displacement) {
 
 TEST(means_over_the_last_period_do_not_notice_a_turn_in_a_stream) {
     struct simulation *const simulation = school_simulation(
-        SCHOOL_DEFAULTS
         "time: {end: 3, shedding_interval: 0.02, output_interval: 0.02}\nfluid: {velocity: [0.4, -0.2]}\n"
         "fish: [{start: {speed: 0.5}}]\n");
     school_measure(simulation, 1.5);
@@ -177,7 +173,7 @@ TEST(means_over_the_last_period_do_not_notice_a_turn_in_a_stream) {
 TEST(the_drift_of_a_stream_goes_on_with_the_stream_that_is_there) {
     struct simulation *const simulation = school_simulation(
         "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\nfluid: {velocity: [0.4, 0], shear: 0.5}\n"
-        "fish: [{}]\n");
+        "fish: [{nodes: 7}]\n");
     school_run(simulation, 0.2);
     rigid_change(simulation->school, simulation->state, 0, &(struct rigid){.place = {0, 2}, .heading = 1});
     const struct sample *const newest = state_recall(&simulation->state->history[0], 0);

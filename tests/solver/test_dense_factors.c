@@ -6,8 +6,6 @@
 #include "school.h"
 #include "solver/fish_factors.h"
 
-const bool school_small = true;
-
 static unsigned seed = 1;
 static double number(void) {
     seed = seed * 1103515245u + 12345u;

@@ -6,8 +6,6 @@
 #include "school.h"
 #include "solver/equilibrium.h"
 
-const bool school_small = true;
-
 #define TIME "time: {end: 1, shedding_interval: 0.1}\n"
 #define STREAM TIME "fluid: {density: 1, velocity: [1, 0.2], viscosity: 0}\n"
 #define PLATE                                                                                                      \
@@ -16,8 +14,7 @@ const bool school_small = true;
     " start: {heading: 170, speed: 0}, motion: {prescribed: head, speed: 0}"
 
 // two plates, one behind the other, with couplings
-static const char pair[] =
-    SCHOOL_DEFAULTS STREAM "defaults: {fish: {" PLATE "}}\nfish: [{}, {start: {position: [1.2, 0.1]}}]\n";
+static const char pair[] = STREAM "defaults: {fish: {" PLATE "}}\nfish: [{}, {start: {position: [1.2, 0.1]}}]\n";
 
 struct rig {
     struct simulation *simulation;
@@ -67,9 +64,8 @@ TEST(the_equations_of_a_run_hold_at_rest) {
 }
 
 TEST(bodies_that_go_on_together_are_at_rest_in_their_frame) {
-    struct rig held = rig_of(SCHOOL_DEFAULTS STREAM "fish: [{" PLATE "}]\n");
-    struct rig goes =
-        rig_of(SCHOOL_DEFAULTS TIME "fluid: {density: 1, velocity: [1.5, 0.2], viscosity: 0}\nfish: [{" PLATE "}]\n");
+    struct rig held = rig_of(STREAM "fish: [{" PLATE "}]\n");
+    struct rig goes = rig_of(TIME "fluid: {density: 1, velocity: [1.5, 0.2], viscosity: 0}\nfish: [{" PLATE "}]\n");
     // the frame moves at half a metre per second along x, the heading of the second plate
     for (int i = 0; i < 2; i++) {
         struct fish *const fish = &(i == 0 ? &held : &goes)->simulation->school->fish[0];
@@ -147,7 +143,7 @@ static int differences(const struct rig *rig, double matrix[MOST][MOST]) {
 static void stiffness_is_that_of_differences(const char *span, const char *fluid) {
     char text[1000];
     snprintf(text, sizeof text,
-             SCHOOL_DEFAULTS TIME
+             TIME
              "fluid: {density: 1, viscosity: 0, %s}\n"
              "fish: [{nodes: 4, sheet_points: 9, force: pressure, pressure: {span: %s}, wave: {amplitude: 0, "
              "frequency: 0}, body: {profile: uniform, thickness: 0.05, depth: 1, density: 20, modulus: 1e5}, start: "
@@ -183,8 +179,7 @@ TEST(only_displacements_that_grow_without_oscillation_are_counted) {
     } rows[] = {{"2.5", 0}, {"6", 0}, {"12", 0}, {"40", 6}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         char text[1000];
-        snprintf(text, sizeof text,
-                 SCHOOL_DEFAULTS TIME "fluid: {density: 1, velocity: [%s, 0], viscosity: 0}\nfish: [{" PLATE "}]\n",
+        snprintf(text, sizeof text, TIME "fluid: {density: 1, velocity: [%s, 0], viscosity: 0}\nfish: [{" PLATE "}]\n",
                  rows[i].stream);
         struct rig rig = rig_of(text);
         struct equilibrium_stiffness stiffness;
@@ -196,7 +191,7 @@ TEST(only_displacements_that_grow_without_oscillation_are_counted) {
 }
 
 TEST(nothing_bends_where_the_whole_motion_is_given) {
-    struct rig rig = rig_of(SCHOOL_DEFAULTS STREAM
+    struct rig rig = rig_of(STREAM
                             "fish: [{nodes: 7, sheet_points: 13, force: pressure, pressure: {span: infinite},"
                             " wave: {amplitude: 0, frequency: 0}, start: {heading: 170, speed: 0},"
                             " motion: {prescribed: all, speed: 0}}]\n");

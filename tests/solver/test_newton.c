@@ -4,8 +4,6 @@
 #include "school.h"
 #include "solver/newton.h"
 
-const bool school_small = true;
-
 // u0^2 + u1 = 3, u0 - u1 = -1: solved by 1, 2
 struct pair {
     double u[2];

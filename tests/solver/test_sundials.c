@@ -8,8 +8,6 @@
 #include "school.h"
 #include "solver/sundials.h"
 
-const bool school_small = true;
-
 // enough for threads
 enum { N = PARALLEL_ELEMENTS + 77, N_VECTORS = 4, OURS = 0, SERIAL = 1 };
 

@@ -7,9 +7,7 @@
 #include "state/state.h"
 #include "wake/sheet.h"
 
-const bool school_small = true;
-
-#define TIME "time: {end: 1, shedding_interval: 0.01, output_interval: 0.01}\n"
+#define SMALL "time: {end: 1, shedding_interval: 0.01, output_interval: 0.01}\ndefaults: {fish: {nodes: 7}}\n"
 #define TWO "fish: [{}, {start: {position: [9, -3]}}]\n"
 
 enum { N = 1600 };
@@ -134,15 +132,15 @@ static void check_bound(const char *text) {
 }
 
 TEST(the_velocity_at_the_bodies_changes_by_less_than_the_bound) {
-    check_bound(TIME "wake: {lifetime: 16, shedding: continuous, merge: 1.0e-4}\n" TWO);
-    check_bound(TIME "wake: {lifetime: 16, shedding: continuous, merge: 1.0e-2}\n" TWO);
-    check_bound(TIME "wake: {lifetime: 16, shedding: sheet, merge: 1.0e-4}\n" TWO);
-    check_bound(TIME "wake: {lifetime: 16, shedding: sheet, merge: 1.0e-2}\n" TWO);
+    check_bound(SMALL "wake: {lifetime: 16, shedding: continuous, merge: 1.0e-4}\n" TWO);
+    check_bound(SMALL "wake: {lifetime: 16, shedding: continuous, merge: 1.0e-2}\n" TWO);
+    check_bound(SMALL "wake: {lifetime: 16, shedding: sheet, merge: 1.0e-4}\n" TWO);
+    check_bound(SMALL "wake: {lifetime: 16, shedding: sheet, merge: 1.0e-2}\n" TWO);
 }
 
 TEST(a_merged_marker_has_the_mean_rate_of_the_pair) {
     struct setup setup;
-    trail(&setup, TIME "wake: {lifetime: 16, shedding: sheet, merge: 1.0e-4}\n" TWO);
+    trail(&setup, SMALL "wake: {lifetime: 16, shedding: sheet, merge: 1.0e-4}\n" TWO);
     struct wake *const wake = &setup.state->wake[0];
     for (int i = 0; i < N; i++) {
         wake->rate[i] = i % 2 ? 1 : -1;
@@ -167,7 +165,7 @@ static int count_between(const struct wake *wake, double low, double high) {
 
 TEST(nothing_is_merged_near_a_body_or_where_one_will_be) {
     struct setup setup;
-    trail(&setup, TIME "wake: {lifetime: 16, shedding: sheet, merge: 0.1}\n" TWO);
+    trail(&setup, SMALL "wake: {lifetime: 16, shedding: sheet, merge: 0.1}\n" TWO);
     struct wake *const wake = &setup.state->wake[0];
     // the own body ends at 1, the other body lies 3 below 9 to 10
     assert_int_equal(count_between(wake, 1, 2.999), 199);
@@ -176,7 +174,8 @@ TEST(nothing_is_merged_near_a_body_or_where_one_will_be) {
     BELOW(count_between(wake, 8, 11), 250);
 
     // the other fish swims left below the wake, and passes most of the wake at a distance of 1
-    trail(&setup, TIME "wake: {lifetime: 16, shedding: sheet, merge: 0.1}\nfish: [{}, {start: {position: [9, -1]}}]\n");
+    trail(&setup,
+          SMALL "wake: {lifetime: 16, shedding: sheet, merge: 0.1}\nfish: [{}, {start: {position: [9, -1]}}]\n");
     const int n_passed = merge_all(&setup);
     assert_int_equal(count_between(&setup.state->wake[0], 3.005, 8.995), 599);
     BELOW(n_passed, n);
@@ -188,7 +187,7 @@ TEST(the_newest_vortices_are_never_merged) {
     for (int i = 0; i < 4; i++) {
         struct setup setup;
         char text[256];
-        snprintf(text, sizeof text, TIME "wake: {lifetime: 16, shedding: %s, merge: 0.1}\nfish: [{}]\n", kinds[i % 2]);
+        snprintf(text, sizeof text, SMALL "wake: {lifetime: 16, shedding: %s, merge: 0.1}\nfish: [{}]\n", kinds[i % 2]);
         trail(&setup, text);
         struct wake *const wake = &setup.state->wake[0];
         wake->n_vortex -= i / 2;
@@ -213,8 +212,8 @@ TEST(a_pair_that_dies_before_a_body_comes_is_merged) {
     // the second body is 100 away and comes near with 8 a second, in 12 s; the oldest vortices have some tenths of a
     // second to live, the newest ones 16 s
     struct setup setup;
-    trail(&setup,
-          TIME "wake: {lifetime: 16, shedding: continuous, merge: 0.1}\nfish: [{}, {start: {position: [100, 0.2]}}]\n");
+    trail(&setup, SMALL
+          "wake: {lifetime: 16, shedding: continuous, merge: 0.1}\nfish: [{}, {start: {position: [100, 0.2]}}]\n");
     double *const y = setup.state->y;
     const struct fish *const fish = setup.school->fish;
     for (int k = 0; k < fish[0].n_nodes; k++) y[fish[0].at.x + k] -= 100;
@@ -239,7 +238,7 @@ static double merging_distance(int reversed) {
     double distance[2] = {2, 200};
     while (distance[1] - distance[0] > 1e-9) {
         const double middle = (distance[0] + distance[1]) / 2;
-        struct setup setup = setup_of(TIME "wake: {lifetime: 16, shedding: sheet, merge: 0.1}\nfish: [{}]\n");
+        struct setup setup = setup_of(SMALL "wake: {lifetime: 16, shedding: sheet, merge: 0.1}\nfish: [{}]\n");
         const struct fish *const fish = setup.school->fish;
         for (int k = 0; k < fish->n_nodes; k++) setup.state->y[fish->at.vx + k] = setup.state->y[fish->at.vy + k] = 0;
         struct wake *const wake = &setup.state->wake[0];
@@ -265,7 +264,7 @@ TEST(the_distance_does_not_know_which_end_of_the_sheet_is_newer) {
 
 TEST(wakes_take_turns) {
     struct setup setup;
-    trail(&setup, TIME "wake: {lifetime: 16, merge: 0.01}\n" TWO);
+    trail(&setup, SMALL "wake: {lifetime: 16, merge: 0.01}\n" TWO);
     setup.state->event = 1601;
     wake_merge(setup.school, setup.state);
     assert_int_equal(setup.state->wake[0].n_merged, 0);
@@ -281,7 +280,7 @@ TEST(wakes_take_turns) {
 
 TEST(without_the_key_nothing_is_merged) {
     struct setup setup;
-    trail(&setup, TIME "wake: {lifetime: 16}\n" TWO);
+    trail(&setup, SMALL "wake: {lifetime: 16}\n" TWO);
     assert_int_equal(merge_all(&setup), 0);
     assert_int_equal(setup.state->wake[0].n_vortex, N);
 }

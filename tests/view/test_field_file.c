@@ -10,8 +10,6 @@
 #include "school.h"
 #include "view/field_file.h"
 
-const bool school_small = true;
-
 enum { N_POINTS = 60 };
 
 static char folder[] = "/tmp/test_field.XXXXXX", path[64], field_path[64];
@@ -22,7 +20,6 @@ static char folder[] = "/tmp/test_field.XXXXXX", path[64], field_path[64];
 static const char *school_with(const char *shedding, const char *keys) {
     static char text[1024];
     snprintf(text, sizeof text,
-             SCHOOL_DEFAULTS
              "time: {end: 0.6, shedding_interval: 0.02, output_interval: 0.1}\noutput: {wake_interval: 0.3}\n"
              "fluid: {velocity: [0.3, -0.2], shear: 0.2, gust: {amplitude: 0.1, frequency: 1}}\n"
              "wake: {shedding: %s, lifetime: 0.4, decay: 0.2}\nsolver: {rtol: 1e-3}\n"
@@ -73,7 +70,7 @@ TEST(the_flow_of_a_row_is_that_of_the_run) {
     static const char *const schools[][2] = {{"sheet", SEVENTEEN},
                                              {"continuous", SEVENTEEN},
                                              {"impulsive", SEVENTEEN},
-                                             {"sheet", "sheet_points: 21, force: pressure, pressure: {span: finite}"}};
+                                             {"sheet", "sheet_points: 26, force: pressure, pressure: {span: finite}"}};
     for (int s = 0; s < 4; s++) {
         const char *const text = school_with(schools[s][0], schools[s][1]);
         write_run(text);

@@ -6,8 +6,6 @@
 #include "school.h"
 #include "view/outline.h"
 
-const bool school_small = true;
-
 enum { MAX_NODES = 33 };
 
 /* A straight body along x of length 1, tail at the right, with the thickness of an ellipse: the mean over each edge, or

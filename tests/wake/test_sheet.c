@@ -6,13 +6,12 @@
 #include "school.h"
 #include "wake/sheet.h"
 
-const bool school_small = true;
-
 #define SHEET "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\n"
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+#define SMALL TIME "defaults: {fish: {nodes: 7}}\n"
 
 TEST(the_panel_integrates_the_inverse_square_root) {
-    struct setup setup = setup_of(TIME SHEET "fish: [{}]\n");
+    struct setup setup = setup_of(SMALL SHEET "fish: [{}]\n");
     struct sheet sheet = {.n_single = 0};
     sheet_reserve(setup.arena, &sheet, 0);
     sheet_build(&sheet, setup.school->fish, setup.school, setup.state->wake);
@@ -29,7 +28,7 @@ TEST(the_panel_integrates_the_inverse_square_root) {
 }
 
 TEST(a_marker_is_born_at_the_tail_at_every_event) {
-    struct simulation *const simulation = school_simulation(TIME SHEET "fish: [{start: {speed: 1}}]\n");
+    struct simulation *const simulation = school_simulation(SMALL SHEET "fish: [{start: {speed: 1}}]\n");
     const struct fish *fish = simulation->school->fish;
     const struct wake *wake = &simulation->state->wake[0];
     const double *const y = simulation->state->y;
@@ -54,7 +53,7 @@ TEST(a_marker_is_born_at_the_tail_at_every_event) {
 }
 
 TEST(a_marker_of_a_tail_that_moves_backwards_stays_at_the_tail) {
-    struct simulation *const simulation = school_simulation(TIME SHEET "fish: [{start: {speed: -1}}]\n");
+    struct simulation *const simulation = school_simulation(SMALL SHEET "fish: [{start: {speed: -1}}]\n");
     const struct fish *fish = simulation->school->fish;
     const struct wake *wake = &simulation->state->wake[0];
     const double *const y = simulation->state->y;
@@ -71,7 +70,7 @@ TEST(a_marker_of_a_tail_that_moves_backwards_stays_at_the_tail) {
     }
 }
 
-#define SPAN(word) "sheet: {curve: smooth}\nfish: [{force: pressure, sheet_points: 33, pressure: {span: " word "}}]\n"
+#define SPAN(word) "fish: [{nodes: 7, pressure: {span: " word "}}]\n"
 
 // every view has the circulation Gamma(t) less the label of the oldest marker; a middle has the whole stretch
 TEST(every_view_has_the_same_circulation) {
@@ -106,7 +105,7 @@ TEST(every_view_has_the_same_circulation) {
 // model.md, section 18: s(d) = w^2/8 (1 - exp(-(d/(3 w))^4)) at the distance d from the tail along the sheet
 TEST(legs_grow_along_the_sheet_and_old_stretches_have_fewer_points) {
     enum { N = 9 };
-    struct setup setup = setup_of(TIME SHEET SPAN("finite"));
+    struct setup setup = setup_of(SMALL SHEET SPAN("finite"));
     const struct fish *const fish = setup.school->fish;
     struct wake *const wake = &setup.state->wake[0];
     const double w = fish->strip_depth, spacing = 0.7 * w;
@@ -148,7 +147,7 @@ TEST(stretches_decay_by_labels_only_if_rings_must_stay_closed) {
 }
 
 TEST(the_smoothing_tapers_to_nothing_at_the_tail) {
-    struct simulation *const simulation = school_simulation(TIME SHEET "fish: [{start: {speed: 1}}]\n");
+    struct simulation *const simulation = school_simulation(SMALL SHEET "fish: [{start: {speed: 1}}]\n");
     school_run(simulation, 0.8);
     const struct sheet_points *const sheet = &simulation->residual->flow->fish[0].wake.graded;
     const struct sources *const sources = &sheet->sources;
@@ -168,7 +167,7 @@ TEST(the_smoothing_tapers_to_nothing_at_the_tail) {
 // beside the body the taper length falls from the length behind the tail, at right angles, to that beside the body, at
 // an angle of 30 degrees with the normal and beyond
 TEST(the_taper_is_shorter_beside_the_body) {
-    struct setup setup = setup_of(TIME SHEET "fish: [{}]\n");
+    struct setup setup = setup_of(SMALL SHEET "fish: [{}]\n");
     const struct fish *const fish = setup.school->fish;
     const double tangent[] = {0.6, 0.8}, pi = acos(-1);
     for (int degrees = -180; degrees <= 180; degrees += 5) {
@@ -183,7 +182,7 @@ TEST(the_taper_is_shorter_beside_the_body) {
 
 // beyond 2.36 times the longer taper the taper is negligible in any direction; slightly closer the taper is finite
 TEST(far_from_the_tail_the_smoothing_is_full) {
-    struct setup setup = setup_of(TIME SHEET "fish: [{length: 2}]\n");
+    struct setup setup = setup_of(SMALL SHEET "fish: [{length: 2}]\n");
     const struct fish *const fish = setup.school->fish;
     const double along[2] = {1, 0};
     for (double angle = 0; angle < 6.3; angle += 0.3) {
@@ -202,7 +201,7 @@ TEST(far_from_the_tail_the_smoothing_is_full) {
 
 TEST(total_circulation_vanishes) {
     struct simulation *const simulation = school_simulation(
-        TIME "wake: {shedding: sheet, lifetime: 0.3}\nfish: [{start: {speed: 1}}, {start: {position: [0.2, 0.6]}}]\n");
+        SMALL "wake: {shedding: sheet, lifetime: 0.3}\nfish: [{start: {speed: 1}}, {start: {position: [0.2, 0.6]}}]\n");
     for (int n = 0; n < 30; n++) {
         school_ok(simulate_step(simulation));
         simulate_measure(simulation);
