@@ -293,7 +293,7 @@ install: $(program) $(library) $(shared) $(manual) $(completion)  ## install pro
 	$(quiet)rm -f '$(DESTDIR)$(python_modules)/shoal.py'
 	$(quiet)install -m 644 scripts/shoal/*.py '$(DESTDIR)$(python_modules)/shoal'
 	$(quiet)install -m 755 doc/examples/*.py '$(DESTDIR)$(prefix)/share/shoal/doc/examples'
-	$(quiet)install -m 644 doc/figures/*.png '$(DESTDIR)$(prefix)/share/shoal/doc/figures'
+	$(quiet)install -m 644 doc/figures/*.png doc/figures/*.gif '$(DESTDIR)$(prefix)/share/shoal/doc/figures'
 	$(quiet)install -m 644 doc/figures/gallery/*.png '$(DESTDIR)$(prefix)/share/shoal/doc/figures/gallery'
 	$(quiet)ln -sfn '$(patsubst $(prefix)/%,../../../%,$(python_modules))/shoal' '$(DESTDIR)$(prefix)/share/shoal/scripts/shoal'
 	$(quiet)install -m 644 $(filter %.1,$(manual)) '$(DESTDIR)$(prefix)/share/man/man1'

@@ -208,7 +208,7 @@ def animate(frames, follow, with_axes):
     border = 0.8 if with_axes else 0
     height = np.clip((WIDTH - border) * size[1] / size[0] + border, LEAST_HEIGHT, MOST_HEIGHT)
     figure, axes = pyplot.subplots(figsize=(WIDTH, height), layout="constrained")
-    snapshot = Snapshot(axes, frames)
+    snapshot = Snapshot(axes, frames, dot=9 if with_axes else 30)  # the wakes are all that a movie without axes explains
     if with_axes:
         add_legend(axes, swim_handles())
     else:

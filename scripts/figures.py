@@ -10,7 +10,7 @@ A figure comes from the commands of one row of a table below. Its inputs are the
 the case with its value), the *script* that draws, and the *results* of the program (tests/data/results.tsv, to three
 digits). doc/figures/inputs.tsv has a checksum of each, and the CPU seconds of the commands. Results are kept in a folder
 (--data, build/figures) as long as case and results are the same. Pictures have few colours, those of the gallery at most
-60 kB.
+60 kB, a moving one at most 3 MB.
 
 Exit codes: 0, with --list 1 if a figure is older than its inputs.
 """
@@ -23,13 +23,14 @@ import os
 import re
 import resource
 import shlex
+import shutil
 import subprocess
 import sys
 
 HERE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 PROGRAM = os.path.join(HERE, "build", "shoal")
 FOLDER = os.path.join(HERE, "doc", "figures")
-GALLERY_BYTES = 60_000
+GALLERY_BYTES, MOVING_BYTES = 60_000, 3_000_000
 INPUTS = ["case", "script", "results"]
 
 # Cases that the gallery writes itself.
@@ -133,7 +134,12 @@ CHAPTERS = [
 STUDY = "cases/studies/"
 FIGURES = {
     **{f"model_{name}": [f"scripts/drawings.py {name} model_{name}.png"] for name in ("rod", "curvature", "outline", "sheet", "ring")},
+    # the figure that README.md begins with: a picture for each row
+    "moving": ["shoal run cases/article/figure8.yaml -q -o moving.nc --set time.end=7 --set time.output_interval=0.05 "
+               "--set output.wake_interval=0.05", "scripts/animate.py moving.nc moving.gif --no-axes --follow --fps 20 --dpi 100"],
     "demo": ["shoal run cases/demo.yaml -q -o demo.nc", "plot.py swim demo.nc demo.png"],
+    # the case in README.md
+    "case": ["shoal run case.yaml -q -o case.nc", "plot.py swim case.nc --follow -- case.png"],
     "figure5": ["shoal run cases/article/figure5.yaml -q -o figure5.nc", "plot.py gait figure5.nc figure5.png --shapes 20"],
     **{name: [f"shoal run cases/article/{name}.yaml -q -o {name}.nc", f"plot.py swim {name}.nc --no-follow --times {times} -- {name}.png"]
        for name, times in (("figure6_free", "2 10 20"), ("figure6_turn", "2 5 10 20"), ("figure7_free", "2 10 20"),
@@ -158,13 +164,18 @@ FIGURES = {
     "best_gait": ["doc/examples/best_gait.py --figure best_gait.png"],
     "hold_place": ["doc/examples/hold_place.py --figure hold_place.png"],
 }
-# paths in doc/figures without .png
+# paths in doc/figures without their ending
 TABLE = {**FIGURES, **{f"gallery/{name}": commands for _, _, some in CHAPTERS for name, _, commands in some}}
 
 
 def command_line(command):
     """A command as a reader types it in the top folder."""
     return command.replace("plot.py", "scripts/plot.py", 1).replace("shoal ", "build/shoal ", 1)
+
+
+def file_of(name):
+    """The path of a figure in doc/figures."""
+    return name + (".gif" if f"{os.path.basename(name)}.gif" in TABLE[name][-1].split() else ".png")
 
 
 def checksum(text):
@@ -280,7 +291,13 @@ def draw(name, folder):
         for stamp in kept:
             os.remove(stamp)
         return draw(name, folder)
-    shrink(os.path.join(folder, f"{os.path.basename(name)}.png"), os.path.join(FOLDER, f"{name}.png"), name.startswith("gallery/"))
+    source, target = os.path.join(folder, os.path.basename(file_of(name))), os.path.join(FOLDER, file_of(name))
+    if target.endswith(".gif"):
+        if os.path.getsize(source) > MOVING_BYTES:
+            sys.exit(f"figures.py: {source} has {os.path.getsize(source)} bytes, more than {MOVING_BYTES}")
+        shutil.copyfile(source, target)
+    else:
+        shrink(source, target, name.startswith("gallery/"))
     return seconds + drawing
 
 
@@ -333,7 +350,8 @@ def main():
     os.makedirs(options.data, exist_ok=True)
     if not os.path.exists(os.path.join(options.data, "cases")):
         os.symlink(os.path.join(HERE, "cases"), os.path.join(options.data, "cases"))
-    for name, text in CASES.items():
+    cases = {**CASES, "case.yaml": re.search(r"```yaml\n(.*?)```", read("README.md"), re.S)[1]}
+    for name, text in cases.items():
         with open(os.path.join(options.data, name), "w", encoding="utf-8") as file:
             file.write(text)
 

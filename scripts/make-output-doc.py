@@ -11,7 +11,23 @@ INTRODUCTION = """\
 <!-- Written by `make docs` from the tables in src/result/result_table.c and src/school/warnings.c and the text in scripts/make-output-doc.py. -->
 
 `shoal run CASE` writes one NetCDF file in the classic format with 64-bit sizes (CDF-5), which every NetCDF library
-since 4.4 reads.
+since 4.4 reads. Most questions need one of ten variables:
+
+| variable | what it is | unit |
+|---|---|---|
+| `com` | position of the centre of mass of each fish | m |
+| `x` | positions of the nodes of each body, from the nose to the tail | m |
+| `speed` | mean speed through the water over the last beat | m s-1 |
+| `heading` | direction in which the fish points, from the x axis towards the y axis | degree |
+| `thrust` | force of the water along the heading | N |
+| `actuation_power` | power of the muscle | W |
+| `cost_of_transport` | mean power over mass and speed, over the last beat | m s-2 |
+| `strouhal` | frequency times width of the tail beat over speed | 1 |
+| `least_distance` | smallest distance between two bodies | m |
+| `wake_x`, `wake_circulation` | the vortices of the wakes: positions, and circulation | m, m2 s-1 |
+
+`run.speed.plot.line(x="time")` draws one of them (see below), and `scripts/plot.py time demo.nc` several. All other
+variables stand in the tables at the end of this page.
 
 ## Opening
 

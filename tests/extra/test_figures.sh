@@ -30,11 +30,12 @@ for path in ["README.md", *(f"doc/{name}" for name in os.listdir(os.path.join(ro
     with open(os.path.join(root, path), encoding="utf-8") as file:
         pictures = re.findall(r"!\[[^]]*\]\(([^)]*)\)", file.read())
     shown |= {os.path.relpath(os.path.join(root, os.path.dirname(path), name), figures.FOLDER) for name in pictures}
-there = {os.path.relpath(os.path.join(at, name), figures.FOLDER) for at, _, names in os.walk(figures.FOLDER) for name in names if name.endswith(".png")}
-made = {f"{name}.png" for name in figures.TABLE}
+there = {os.path.relpath(os.path.join(at, name), figures.FOLDER) for at, _, names in os.walk(figures.FOLDER) for name in names if name.endswith((".png", ".gif"))}
+made = {figures.file_of(name) for name in figures.TABLE}
 assert shown <= made and made == there, (shown - made, made ^ there)
 sizes = [os.path.getsize(os.path.join(figures.FOLDER, name)) for name in made if name.startswith("gallery/")]
 assert len(sizes) > 20 and max(sizes) <= figures.GALLERY_BYTES, sizes
+assert os.path.getsize(os.path.join(figures.FOLDER, "moving.gif")) <= figures.MOVING_BYTES
 end
 documents_have() { timeout "$time_limit" /usr/bin/python3 documents_have.py "$root" "$program"; }
 check the_documents_have_every_figure documents_have
