@@ -19,7 +19,7 @@ cp doc/shoal.ipynb "$folder/notebook/"
 rm -f "$source/doc/figures/README.md"
 sed -i 's|](README.md)|](index.md)|; s|](../README.md)|](../index.md)|' "$source"/*.md "$source"/doc/*.md
 {
-    cat README.md
+    sed '/figures\/moving.gif/a \\n<a href="school.html">A school that plays in your browser</a>' README.md
     printf '\n```{toctree}\n:hidden:\n:caption: %s\n\n' Manual
     printf '%s\n' doc/tutorial doc/install doc/cases doc/output doc/studies doc/steady doc/gallery doc/python doc/notebook doc/glossary
     printf '```\n\n```{toctree}\n:hidden:\n:caption: %s\n\n' Reference
@@ -61,6 +61,10 @@ cat >"$source/doc/api-c.md" <<'PAGE'
 ```
 PAGE
 
+# a school that plays in the browser, as a page of its own
+build/shoal run cases/school.yaml -q --force -o "$folder/school.nc" --set time.end=6
+build/shoal view "$folder/school.nc" -q --force -o "$folder/extra/school.html"
+
 # the notebook, executed, as a page of its own
 cat >"$source/doc/notebook.md" <<'PAGE'
 # Notebook
@@ -69,6 +73,8 @@ cat >"$source/doc/notebook.md" <<'PAGE'
 PAGE
 PYTHONPATH=$PWD/scripts PYTHONWARNINGS=ignore /usr/bin/python3 -m nbconvert --log-level=ERROR --execute --to html \
     --output-dir="$folder/extra" --output=notebook.html "$folder/notebook/shoal.ipynb" 2>"$folder/notebook.log"
+# the template loads MathJax and RequireJS from folders of Debian, and the notebook needs neither
+sed -i '/<script[^>]*src="file:/d' "$folder/extra/notebook.html"
 
 doxygen - >"$folder/doxygen.log" 2>&1 <<OPTIONS
 PROJECT_NAME = shoal
@@ -88,3 +94,8 @@ OPTIONS
 
 SHOAL_VERSION=$2 SHOAL_XML=$folder/xml SHOAL_EXTRA=$folder/extra SHOAL_SCRIPTS=$PWD/scripts \
     /usr/bin/python3 -m sphinx -q -W --keep-going -b html -c scripts/site "$source" "$folder/html"
+
+# the theme's script imports another one, which a browser permits in a module only, and a module not from a file: one script
+scripts=$folder/html/_static/scripts
+sed '/^import Gumshoe/d' "$scripts/furo.js" | cat "$scripts/gumshoe-patched.js" - >"$scripts/whole.js"
+mv "$scripts/whole.js" "$scripts/furo.js"

@@ -47,5 +47,21 @@ the_notebook_ran() {
     has "$html/notebook.html" "steady_lift of foil: 0.2434" && has "$html/notebook.html" "<iframe srcdoc" && ! grep -n Traceback "$html/notebook.html"
 }
 check the_notebook_shows_a_run_a_movie_and_an_error_bar the_notebook_ran
+no_path_of_the_machine() { ! grep -rlE 'src="file:|href="file:' "$html" --include='*.html'; }
+check no_page_loads_a_file_of_the_machine no_path_of_the_machine
+# a page opens in a browser with an empty console
+opens_without_a_message() {
+    timeout "$time_limit" chromium --headless=new --no-sandbox --disable-gpu --enable-logging=stderr --dump-dom \
+        --user-data-dir="$folder/browser" "file://$html/$1" >browser.out 2>browser.err </dev/null
+    ! grep -a ':CONSOLE' browser.err && has browser.out "$2"
+}
+if command -v chromium >/dev/null; then
+    check the_first_page_has_the_movie_and_a_school opens_without_a_message index.html 'href="school.html"'
+    check a_page_has_its_contents_and_the_switch opens_without_a_message doc/model.html theme-toggle
+    check the_notebook_opens opens_without_a_message notebook.html iframe
+    check the_school_plays opens_without_a_message school.html canvas
+else
+    skip the_pages_open_without_a_message "there is no chromium"
+fi
 check the_search_index_has_the_documents has "$html/searchindex.js" doc/tutorial
 finish
