@@ -50,6 +50,8 @@ static const struct option_help all_options[] = {
      "additional times of checkpoints in s, separated by commas (see time.checkpoint_interval)"},
     {OPTION_MAX_WALL, "max-wall", "HH:MM:SS",
      "stop after this wall time, as a signal does: exit code 75; a run writes a checkpoint"},
+    {OPTION_TRACE, "trace", "FILE",
+     "write a line for each step that ida attempts, as comma-separated values (doc/numerics.md, section 7)"},
     {OPTION_STRICT, "strict", NULL, "exit with code 3 if the result has warnings"},
     {OPTION_AT, "at", "T", "time of a row of the result, s (default: the last row with a wake)"},
     {OPTION_GRID, "grid", "NX,NY", "number of points in x and y (default: 400 along the longer side, equal spacing)"},
@@ -176,6 +178,7 @@ static void take_option(struct request *request, int code, char *argument) {
             request->assignments[request->n_assignments++] = request->end;
             break;
         case OPTION_CHECKPOINT_AT: request->checkpoint_at = argument; break;
+        case OPTION_TRACE: request->trace = argument; break;
         case OPTION_MAX_WALL: request->max_wall = argument; break;
         case OPTION_STRICT: request->strict = 1; break;
         case OPTION_JSON: request->json = 1; break;

@@ -34,6 +34,7 @@ enum option_code {
     OPTION_FROM,
     OPTION_CHECKPOINT_AT,
     OPTION_MAX_WALL,
+    OPTION_TRACE,
     OPTION_OF,
     OPTION_WITHIN,
     OPTION_AGAINST,
@@ -53,7 +54,7 @@ struct request {
     const char **assignments; /* of --set, "KEY=VALUE" */
     char threads[64];         /* --threads as an assignment */
     char end[64];             /* --end as an assignment */
-    const char *checkpoint_at, *max_wall;
+    const char *checkpoint_at, *max_wall, *trace;
     const char *processes, *members;
     const char *methods, *rtols, *steps, *repeats, *reference_rtol, *limit, *bundle;
     int slurm, strict;

@@ -15,6 +15,7 @@
 #include "result/target.h"
 #include "run/record.h"
 #include "run/simulate_run.h"
+#include "solver/trace.h"
 #include "steady/steady.h"
 #include "view/export.h"
 
@@ -63,9 +64,22 @@ static void tell_note(const char *line, void *data) {
     say_line(stderr, "shoal: note: %s\n", line);
 }
 
+/* Create the file of --trace, if it was given, for a case; *trace: NULL without it. */
+static enum status open_trace(const struct request *request, const struct case_values *values, struct trace **trace) {
+    *trace = NULL;
+    if (!request->trace) return STATUS_OK;
+    if (values->solver.method != METHOD_IDA) {
+        return status_fail(STATUS_CASE, "--trace: only ida is traced, and solver.method is %s",
+                           methods_table[values->solver.method].word);
+    }
+    return trace_create(request->arena, trace, request->trace, request->force);
+}
+
 /* Run a case, or resume if values is NULL, and report progress, notes and warnings. */
 static enum status run_case(const struct case_values *values, const struct request *request, const char *path) {
     struct teller teller = {.arena = request->arena, .path = ""};
+    struct trace *trace = NULL;
+    if (values) TRY(open_trace(request, values, &trace));
     const struct simulate_options options = {.path = path,
                                              .overwrite = request->force,
                                              .command = request->command_line,
@@ -75,6 +89,7 @@ static enum status run_case(const struct case_values *values, const struct reque
                                              .warn = tell_warning,
                                              .note = request->quiet ? NULL : tell_note,
                                              .data = &teller,
+                                             .trace = trace,
                                              .stop = main_stop_signal()};
     const struct simulate_changes changes = {request->n_assignments, request->assignments, *request->end != '\0'};
     if (request->max_wall) TRY(main_limit_wall_time(request->max_wall));
@@ -84,6 +99,7 @@ static enum status run_case(const struct case_values *values, const struct reque
         values ? simulate_run(values, &options) : simulate_resume(request->positional, &changes, &options);
     say_progress_end(&teller.progress);
     TRY(status);
+    if (trace) TRY(trace_close(trace));
 
     if (request->verbose) {
         TRY(main_print_info(request->arena, teller.path, 0));
@@ -160,6 +176,8 @@ enum status main_steady(const struct request *request) {
     const char *path;
     TRY(read_one_case(request, &values, &path));
     struct teller teller = {.arena = request->arena};
+    struct trace *trace;
+    TRY(open_trace(request, &values, &trace));
     const struct steady_options options = {.path = path,
                                            .from = request->from,
                                            .overwrite = request->force,
@@ -167,6 +185,7 @@ enum status main_steady(const struct request *request) {
                                            .progress = request->quiet ? NULL : say_progress_steady,
                                            .warn = tell_warning,
                                            .data = &teller,
+                                           .trace = trace,
                                            .stop = main_stop_signal()};
     TRY(parallel_start_threads(values.school.threads));
     if (request->max_wall) TRY(main_limit_wall_time(request->max_wall));
@@ -175,6 +194,7 @@ enum status main_steady(const struct request *request) {
     const enum status status = steady_run(&values, &options);
     say_progress_end(&teller.progress);
     TRY(status);
+    if (trace) TRY(trace_close(trace));
     if (request->json) {
         TRY(netcdf_print(request->arena, path, result_json_steady, stdout));
     } else if (!request->quiet) {

@@ -170,7 +170,7 @@ enum status simulate_step(struct simulation *simulation) {
     simulation->residual->after_step = simulation->after_step;
     simulation->residual->after_step_data = simulation->after_step_data;
     const double next = fish_event_time(school, state->event + 1);
-    enum status status = integrator->advance(simulation->solver, next, simulation->stop);
+    enum status status = integrator->advance(simulation->solver, next, simulation->stop, simulation->trace);
 
     // contact.action: stop takes precedence over the status of the integrator
     const struct closest *const closest = state->closest;

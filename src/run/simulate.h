@@ -29,6 +29,7 @@ struct simulation {
     struct integrator_options options;
     struct integrator_counts totals;          /* up to the last event, with the size of the last step */
     const volatile sig_atomic_t *stop;        /* simulate_step stops when *stop is not 0; may be NULL */
+    struct trace *trace;                      /* of the steps that ida attempts; NULL: none */
     void (*after_step)(double t, void *data); /* as in struct residual */
     void *after_step_data;
     long n_events;  /* of the whole run, without the event at t = 0 */

@@ -76,6 +76,7 @@ static enum status run_loop(struct run *run) {
     const struct simulate_options *const options = run->options;
     struct simulation *const simulation = run->simulation;
     simulation->stop = options->stop;
+    simulation->trace = options->trace;
     if (simulation->stop) run->before = state_create(simulation->arena, simulation->school);
     if (options->progress) {
         simulation->after_step = run_report_step;

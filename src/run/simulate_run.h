@@ -10,6 +10,8 @@
 #include "base/status.h"
 #include "case/case.h"
 
+struct trace;
+
 /* Progress of a run, reported after every event, and after every 100 steps of the integrator in between. */
 struct simulate_progress {
     double t, end;
@@ -36,6 +38,7 @@ struct simulate_options {
     /* called with each note for the user, such as another processor at the checkpoint; may be NULL */
     void (*note)(const char *line, void *data);
     void *data;
+    struct trace *trace; /* gets a line for each step that ida attempts (solver/trace.h); NULL: none */
     /* the run stops with a checkpoint when *stop is not 0; SIGALRM: --max-wall has elapsed; may be NULL */
     const volatile sig_atomic_t *stop;
 };

@@ -56,6 +56,14 @@ struct ida {
     struct integrator_counts before; /* totals up to the last restart, which resets the totals of IDA */
     long jacobians; /* evaluations so far: IDA resets the total of evaluations only some time after a restart */
     long steps_of_order[METHODS_MAX_ORDER]; /* so far */
+
+    /* the trace of this interval, NULL: none; the last attempt, whose error test is judged after Newton's iteration */
+    struct trace *trace;
+    bool is_pending;
+    int newton_code;
+    struct trace_attempt attempt;
+    double jacobian_cj; /* leading coefficient of the Jacobian */
+    long gmres;         /* iterations up to the last attempt */
 };
 
 static int residual_callback(sunrealtype t, N_Vector y, N_Vector yp, N_Vector value, void *data) {
@@ -73,6 +81,7 @@ static int jacobian_callback(sunrealtype t, sunrealtype cj, N_Vector y, N_Vector
     (void)yp, (void)value, (void)matrix, (void)scratch1, (void)scratch2, (void)scratch3;
     struct ida *const solver = data;
     solver->jacobians++;
+    solver->jacobian_cj = cj;
     solver->failure =
         residual_jacobian(solver->residual, &residual_run, t, cj, N_VGetArrayPointer(y), solver->jacobian);
     return solver->failure;
@@ -107,6 +116,36 @@ static void update_jacobian(void *data) {
 static int couple_more(void *data) {
     struct ida *const solver = data;
     return residual_couple_more(&solver->residual->couplings, solver->state->y);
+}
+
+// write the last attempt: Newton's iteration failed, or the step was accepted, or else failed the error test
+static void ida_trace_result(struct ida *solver, bool is_accepted) {
+    if (!solver->is_pending) return;
+    const int code = solver->newton_code;
+    trace_write(solver->trace, solver->residual->school, &solver->attempt,
+                code == SUN_NLS_CONV_RECVR ? TRACE_NEWTON
+                : code != 0                ? TRACE_NO_VALUE
+                : is_accepted              ? TRACE_ACCEPTED
+                                           : TRACE_ERROR_TEST);
+    solver->is_pending = false;
+}
+
+// keep an attempt; another attempt before it means that IDA has rejected that one
+static void keep_attempt(void *data, int code, const struct trace_attempt *attempt) {
+    struct ida *const solver = data;
+    if (!solver->trace) return;
+    ida_trace_result(solver, false);
+    const long gmres = linear_count(solver->linear.linear).iterations;
+    solver->attempt = *attempt;
+    solver->attempt.event = solver->state->event + 1;
+    solver->attempt.cj_ratio = leading_coefficient(solver) / solver->jacobian_cj;
+    solver->attempt.gmres = gmres - solver->gmres;
+    solver->gmres = gmres;
+    IDAGetCurrentTime(solver->ida, &solver->attempt.t);
+    IDAGetCurrentStep(solver->ida, &solver->attempt.step);
+    IDAGetCurrentOrder(solver->ida, &solver->attempt.order);
+    solver->newton_code = code;
+    solver->is_pending = true;
 }
 
 static enum status ida_first_step(struct ida *solver) {
@@ -167,7 +206,8 @@ static enum status ida_create(struct arena *arena, void **created, struct residu
                                            .data = solver,
                                            .leading_coefficient = leading_coefficient,
                                            .update = is_sheet ? update_jacobian : NULL,
-                                           .complete = couple_more};
+                                           .complete = couple_more,
+                                           .attempted = keep_attempt};
     solver->newton = ida_newton_create(&solver->context, school, rules);
 
     void *const ida = solver->ida =
@@ -295,12 +335,13 @@ static enum status ida_failed(const struct ida *solver, int code, long steps) {
                        now, reason, seen, error, solver->options.order, steps, last, message);
 }
 
-static enum status ida_advance(void *data, double t, const volatile sig_atomic_t *stop) {
+static enum status ida_advance(void *data, double t, const volatile sig_atomic_t *stop, struct trace *trace) {
     struct ida *const solver = data;
     struct state *const state = solver->state;
     double reached = state->t, step = 0;
     long total = 0;
     solver->stop = stop;
+    solver->trace = trace;
     for (long steps = 0; reached < t; steps++) {
         if (steps == solver->options.max_steps) return ida_failed(solver, IDA_TOO_MUCH_WORK, steps);
 
@@ -315,6 +356,7 @@ static enum status ida_advance(void *data, double t, const volatile sig_atomic_t
         solver->failure = STATUS_OK;
         const int code = IDASolve(solver->ida, t, &reached, solver->y, solver->yp, IDA_ONE_STEP);
         if (solver->failure == STATUS_STOPPED) return STATUS_STOPPED;
+        ida_trace_result(solver, code >= 0);
         if (code < 0) return ida_failed(solver, code, steps);
         if (code == IDA_TSTOP_RETURN) reached = end;
         int order;

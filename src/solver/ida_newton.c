@@ -33,7 +33,8 @@ struct ida_newton {
 
     /* since the evaluation of the Jacobian: solutions, their iterations, iterations of the last solution */
     int n_solutions, n_iterations, n_last;
-    bool is_incomplete; /* a new Jacobian would be more complete */
+    bool is_incomplete;           /* a new Jacobian would be more complete */
+    struct trace_attempt attempt; /* corrections of this solution, for rules.attempted */
 };
 
 // judge a correction by one norm: converged, continue, or failed
@@ -51,6 +52,23 @@ static int newton_test(struct ida_newton *newton, int norm, double size, double 
     // with an old Jacobian the first two corrections may grow
     if (newton->done > 2 && rate >= 0.9) return SUN_NLS_CONV_RECVR;
     return newton->done < newton->most ? SUN_NLS_CONTINUE : SUN_NLS_CONV_RECVR;
+}
+
+// keep a correction for the trace: its norms, and the unknown with the largest correction
+static void newton_record(struct ida_newton *newton, double all, double differential, const double *correction,
+                          const double *weight) {
+    struct trace_attempt *const attempt = &newton->attempt;
+    const int n = (int)N_VGetLength(newton->correction), i = attempt->n_corrections++;
+    attempt->worst = -1;
+    for (int k = 0; k < n; k++) {
+        const double weighted = fabs(correction[k] * weight[k]);
+        if (attempt->worst >= 0 && !(weighted > attempt->worst_correction)) continue;
+        attempt->worst = k;
+        attempt->worst_correction = weighted;
+    }
+    if (i >= TRACE_MOST_CORRECTIONS) return;
+    const double rate = newton->done > 1 ? pow(all / newton->first[ALL], 1.0 / (newton->done - 1)) : NAN;
+    attempt->correction[i] = (struct trace_correction){all, differential, rate, newton->done == 1};
 }
 
 // iterate with the present Jacobian; newton->correction holds the residual
@@ -78,6 +96,11 @@ static int newton_iterate(struct ida_newton *newton, N_Vector total, N_Vector we
             const double weighted = correction[i] * weight[i], square = weighted * weighted;
             all += square;
             differential += kind && kind[i] > 0 ? square : 0;
+        }
+
+        if (newton->rules.attempted) {
+            newton_record(newton, sqrt(all / (double)n), kind ? sqrt(differential / (double)n) : NAN, correction,
+                          weight);
         }
 
         // positions may converge later than the other unknowns
@@ -126,8 +149,8 @@ static void newton_start(const struct ida_newton *newton, N_Vector weights, N_Ve
     }
 }
 
-static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector total, N_Vector weights,
-                        sunrealtype tolerance, sunbooleantype evaluate, void *ida) {
+static int newton_solve_step(SUNNonlinearSolver solver, N_Vector predicted, N_Vector total, N_Vector weights,
+                             sunrealtype tolerance, sunbooleantype evaluate, void *ida) {
     struct ida_newton *const newton = solver->content;
     const struct ida_newton_rules *const rules = &newton->rules;
     newton->iterations = newton->failures = 0;
@@ -152,6 +175,7 @@ static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector 
             if (code != 0) return code;
             corotation_set_reference(newton->corotation, N_VGetArrayPointer(predicted));
             newton->n_solutions = newton->n_iterations = 0;
+            if (newton->attempt.n_corrections == 0) newton->attempt.age = 0;
         } else if (rules->update) {
             rules->update(rules->data);
         }
@@ -177,6 +201,17 @@ static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector 
         evaluate = SUNTRUE;
         N_VConst(0, total);
     }
+}
+
+static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector total, N_Vector weights,
+                        sunrealtype tolerance, sunbooleantype evaluate, void *ida) {
+    struct ida_newton *const newton = solver->content;
+    newton->attempt.n_corrections = 0;
+    newton->attempt.worst = -1;
+    newton->attempt.age = newton->n_solutions;
+    const int code = newton_solve_step(solver, predicted, total, weights, tolerance, evaluate, ida);
+    if (newton->rules.attempted) newton->rules.attempted(newton->rules.data, code, &newton->attempt);
+    return code;
 }
 
 // restart of IDA: discard the history

@@ -5,6 +5,7 @@
 
 #include "solver/corotation.h"
 #include "solver/sundials.h"
+#include "solver/trace.h"
 
 /* End of an iteration, and re-evaluation of the Jacobian. */
 struct ida_newton_rules {
@@ -25,6 +26,8 @@ struct ida_newton_rules {
     /* complete the Jacobian if a new Jacobian needs more than max_iterations; returns whether the next evaluation is
      * more complete. NULL: the Jacobian is complete */
     int (*complete)(void *data);
+    /* called at the end of each solution with the result and the corrections; NULL: nobody wants to know */
+    void (*attempted)(void *data, int code, const struct trace_attempt *attempt);
 };
 
 /* Create a solver for IDASetNonlinearSolver. The arena of the context owns the solver; the school must outlive it. */

@@ -9,6 +9,7 @@
 #include "base/methods.h"
 #include "base/status.h"
 #include "school/residual.h"
+#include "solver/trace.h"
 #include "state/state.h"
 
 /* Totals since the start, then the size of the linear systems, then the last step. */
@@ -45,8 +46,9 @@ struct integrator {
 
     /* Integrate to time t [s], the next event, and update the energy balance after every step. Calls status_ask
      * before each step and each iteration. Fails with STATUS_SOLVER and a message with time and cause, or with
-     * STATUS_STOPPED at any time between the two events; never with STATUS_RETRY. */
-    enum status (*advance)(void *solver, double t, const volatile sig_atomic_t *stop);
+     * STATUS_STOPPED at any time between the two events; never with STATUS_RETRY. trace: gets a line for each step that
+     * ida attempts; NULL: none. */
+    enum status (*advance)(void *solver, double t, const volatile sig_atomic_t *stop, struct trace *trace);
 
     /* Discard the history after a jump of the state, which must be consistent; NULL without a history. Fails with
      * STATUS_SOLVER. */

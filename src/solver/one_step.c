@@ -171,7 +171,8 @@ static enum status one_step_iterate(struct one_step *solver, const struct residu
     return STATUS_RETRY;
 }
 
-static enum status one_step_advance(void *data, double t, const volatile sig_atomic_t *stop) {
+static enum status one_step_advance(void *data, double t, const volatile sig_atomic_t *stop, struct trace *trace) {
+    (void)trace;
     struct one_step *const solver = data;
     struct state *const state = solver->state;
     const double start = state->t, interval = t - start;
@@ -264,7 +265,8 @@ static enum status verlet_unstable(const struct verlet *solver, double t) {
         t, solver->options.step);
 }
 
-static enum status verlet_advance(void *data, double t, const volatile sig_atomic_t *stop) {
+static enum status verlet_advance(void *data, double t, const volatile sig_atomic_t *stop, struct trace *trace) {
+    (void)trace;
     struct verlet *const solver = data;
     struct residual *const residual = solver->residual;
     struct state *const state = solver->state;

@@ -193,7 +193,8 @@ static enum status unstable(const struct runge_kutta *solver, double t, const ch
                        solver->options.step > 0 ? ", or a smaller solver.step" : "", control);
 }
 
-static enum status runge_kutta_advance(void *data, double t, const volatile sig_atomic_t *stop) {
+static enum status runge_kutta_advance(void *data, double t, const volatile sig_atomic_t *stop, struct trace *trace) {
+    (void)trace;
     struct runge_kutta *const solver = data;
     struct state *const state = solver->state;
     const size_t size = (size_t)solver->residual->school->n_unknowns * sizeof *state->y;

@@ -232,6 +232,7 @@ static enum status find_and_write(struct run *run) {
     }
     TRY(started);
     run->simulation->stop = options->stop;
+    run->simulation->trace = options->trace;
     const struct school *const school = run->simulation->school;
     if (school->gust_profile != GUST_UNIFORM && fabs(school->gust[0]) + fabs(school->gust[1]) > 0) {
         return status_fail(STATUS_CASE,

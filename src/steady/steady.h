@@ -18,6 +18,8 @@ struct steady_progress {
     double wall_time;
 };
 
+struct trace;
+
 struct steady_options {
     const char *path;    /* of the result file */
     const char *from;    /* steady result that supplies the initial speeds and positions; NULL: values of the case */
@@ -26,6 +28,7 @@ struct steady_options {
     void (*progress)(const struct steady_progress *progress, void *data); /* may be NULL */
     void (*warn)(const char *line, void *data);                           /* may be NULL */
     void *data;
+    struct trace *trace;               /* gets a line for each step that ida attempts; NULL: none */
     const volatile sig_atomic_t *stop; /* a nonzero value stops the search; may be NULL */
 };
 

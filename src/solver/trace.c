@@ -1,0 +1,89 @@
+/* trace.c: lines of comma-separated values. */
+#include "solver/trace.h"
+
+#include <errno.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "school/residual.h"
+
+struct trace {
+    const char *path;
+    FILE *file;
+    int error; /* of the first line that was not written; 0: none */
+};
+
+static void release_trace(void *object) {
+    struct trace *const trace = object;
+    if (trace->file) fclose(trace->file);
+}
+
+enum status trace_create(struct arena *arena, struct trace **trace, const char *path, bool overwrite) {
+    struct trace *new;
+    NEW(arena, new, 1);
+    new->path = arena_text(arena, "%s", path);
+    new->file = fopen(path, overwrite ? "w" : "wx");
+    if (!new->file) {
+        return errno == EEXIST ? status_fail(STATUS_FILE, "--trace %s: the file exists: replace it with --force", path)
+                               : status_fail(STATUS_FILE, "--trace %s: %s", path, strerror(errno));
+    }
+    arena_defer(arena, release_trace, new);
+    fputs(
+        "event,t,step,order,result,iterations,jacobians,age,cj_ratio,gmres,norms,differential_norms,rates,"
+        "unknown,fish,correction\n",
+        new->file);
+    // whole lines, also of a run that ends early
+    setvbuf(new->file, NULL, _IOLBF, BUFSIZ);
+    *trace = new;
+    return STATUS_OK;
+}
+
+// the values of all corrections, separated by blanks; a bar before the first one with a new Jacobian
+static void trace_list(FILE *file, const struct trace_attempt *attempt, size_t offset) {
+    const int n = attempt->n_corrections < TRACE_MOST_CORRECTIONS ? attempt->n_corrections : TRACE_MOST_CORRECTIONS;
+    for (int i = 0; i < n; i++) {
+        const struct trace_correction *const correction = &attempt->correction[i];
+        double value;
+        memcpy(&value, (const char *)correction + offset, sizeof value);
+        fprintf(file, "%s%.3g", i == 0 ? "" : correction->is_first ? " | " : " ", value);
+    }
+    fputc(',', file);
+}
+
+void trace_write(struct trace *trace, const struct school *school, const struct trace_attempt *attempt,
+                 enum trace_result result) {
+    static const char *const words[] = {"accepted", "error_test", "newton", "no_value"};
+    FILE *const file = trace->file;
+    int n_jacobians = 0;
+    for (int i = 0; i < attempt->n_corrections && i < TRACE_MOST_CORRECTIONS; i++) {
+        n_jacobians += attempt->correction[i].is_first && (i > 0 || attempt->age == 0);
+    }
+    fprintf(file, "%ld,%.10g,%.6g,%d,%s,%d,%d,%d,%.4g,%ld,", attempt->event, attempt->t, attempt->step, attempt->order,
+            words[result], attempt->n_corrections, n_jacobians, attempt->age, attempt->cj_ratio, attempt->gmres);
+    trace_list(file, attempt, offsetof(struct trace_correction, norm));
+    trace_list(file, attempt, offsetof(struct trace_correction, differential));
+    trace_list(file, attempt, offsetof(struct trace_correction, rate));
+    if (attempt->worst < 0) {
+        fputs(",,\n", file);
+        if (ferror(file) && trace->error == 0) trace->error = errno;
+        return;
+    }
+
+    // the name of a fish in quotes, with quotes in it doubled
+    const struct unknown_place place = residual_place(school, attempt->worst);
+    fprintf(file, "%s[%d],\"", place.name, place.index);
+    for (const char *c = school->fish[place.fish].name; *c; c++) {
+        if (*c == '"') fputc('"', file);
+        fputc(*c, file);
+    }
+    fprintf(file, "\",%.3g\n", attempt->worst_correction);
+    if (ferror(file) && trace->error == 0) trace->error = errno;
+}
+
+enum status trace_close(struct trace *trace) {
+    if (fclose(trace->file) != 0 && trace->error == 0) trace->error = errno;
+    trace->file = NULL;
+    return trace->error == 0 ? STATUS_OK
+                             : status_fail(STATUS_FILE, "--trace %s: %s", trace->path, strerror(trace->error));
+}

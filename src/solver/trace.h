@@ -1,0 +1,49 @@
+/* trace.h: a file with a line for each step that ida attempts, for `shoal run --trace`: comma-separated values under a
+ * header, as pandas.read_csv reads them. doc/numerics.md, section 7. Tested by tests/app/test_trace.sh. */
+#ifndef TRACE_H
+#define TRACE_H
+
+#include <stdbool.h>
+
+#include "base/arena.h"
+#include "base/status.h"
+#include "fish/fish.h"
+
+struct trace;
+
+/* Outcome of an attempted step: the error test passes or fails, Newton's iteration does not converge, or the equations
+ * or a linear system have no finite value. */
+enum trace_result { TRACE_ACCEPTED, TRACE_ERROR_TEST, TRACE_NEWTON, TRACE_NO_VALUE };
+
+/* The corrections of one attempt, with an old Jacobian and then perhaps with a new one. */
+enum { TRACE_MOST_CORRECTIONS = 64 };
+struct trace_correction {
+    double norm, differential; /* of all unknowns, and of the differential ones where tested (NaN), in tolerances */
+    double rate;               /* of the norm since the first correction with this Jacobian; NaN: the first */
+    bool is_first;             /* with this Jacobian */
+};
+
+struct trace_attempt {
+    long event;        /* number of the event at the end of the interval */
+    double t, step;    /* end and size of the attempted step, s */
+    int order;         /* of BDF */
+    int age;           /* solutions with this Jacobian before; 0: evaluated in this attempt */
+    double cj_ratio;   /* leading coefficient of the step over that of the Jacobian */
+    long gmres;        /* iterations of GMRES */
+    int n_corrections; /* the first TRACE_MOST_CORRECTIONS are kept */
+    struct trace_correction correction[TRACE_MOST_CORRECTIONS];
+    int worst;               /* the unknown with the largest last correction; -1: no correction */
+    double worst_correction; /* in tolerances */
+};
+
+/* Create the file with its header; overwrite: replace an existing one. Fails with STATUS_FILE. */
+enum status trace_create(struct arena *arena, struct trace **trace, const char *path, bool overwrite);
+
+/* Append a line. */
+void trace_write(struct trace *trace, const struct school *school, const struct trace_attempt *attempt,
+                 enum trace_result result);
+
+/* Close the file. Fails with STATUS_FILE if a line was not written. */
+enum status trace_close(struct trace *trace);
+
+#endif

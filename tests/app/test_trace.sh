@@ -1,0 +1,67 @@
+#!/usr/bin/env bash
+# shoal run and steady --trace: a line for each attempted step, which agrees with the totals of the result; messages.
+#
+#   tests/app/test_trace.sh PROGRAM
+# shellcheck source=tests/checks.sh
+. "$(dirname "$0")/../checks.sh"
+
+cat >pair.yaml <<'CASE'
+format: 1
+time: {end: 0.4, shedding_interval: 0.02}
+fish: [{name: 'one, "two"', nodes: 9}, {name: three, nodes: 9, start: {position: [0, 0.3]}}]
+CASE
+cat >totals.py <<'PYTHON'
+import csv, sys
+import netCDF4
+
+rows = list(csv.DictReader(open(sys.argv[1], newline="", encoding="utf-8")))
+data = netCDF4.Dataset("run.nc")
+total = {name: int(data[name][-1]) for name in ("steps", "error_test_failures", "newton_iterations", "gmres_iterations")}
+results = [row["result"] for row in rows]
+assert results.count("accepted") == total["steps"], (results.count("accepted"), total)
+assert results.count("error_test") == total["error_test_failures"] > 0, total
+assert sum(int(row["iterations"]) for row in rows) == total["newton_iterations"]
+assert sum(int(row["gmres"]) for row in rows) == total["gmres_iterations"] > 0
+for row in rows:
+    n = int(row["iterations"])
+    assert all(len(row[name].replace("|", " ").split()) == n for name in ("norms", "differential_norms", "rates")), row
+    assert row["fish"] in ('one, "two"', "three"), row
+    assert (int(row["age"]) == 0) == (int(row["jacobians"]) > 0 and "|" not in row["norms"]) or "|" in row["norms"], row
+
+# accepted steps end at the events, and their orders are those of the result
+accepted = [row for row in rows if row["result"] == "accepted"]
+assert abs(float(accepted[-1]["t"]) - 0.4) < 1e-9 and int(accepted[-1]["event"]) == 20
+orders = [sum(int(row["order"]) == order for row in accepted) for order in range(1, 6)]
+assert orders == data["steps_of_order"][-1].tolist(), orders
+PYTHON
+
+run run pair.yaml -q -o run.nc --trace trace.csv
+check "run --trace: exit 0" test "$code" = 0
+check "the trace agrees with the totals of the result" /usr/bin/python3 totals.py trace.csv
+cp run.nc traced.nc
+run run pair.yaml -q -o run.nc --force
+check "a trace changes no bit" /usr/bin/python3 "$root/tests/run/same_result.py" run.nc traced.nc
+refused "an existing file is kept" 4 'the file exists: replace it with --force' run pair.yaml -q -o other.nc --trace trace.csv
+run run pair.yaml -q -o run.nc --trace trace.csv --force
+check "run --trace --force: exit 0" test "$code" = 0
+refused "no folder" 4 'No such file or directory' run pair.yaml -q -o other.nc --trace nothing/trace.csv
+refused "another method" 2 'only ida is traced, and solver.method is trapezoid' run pair.yaml -q -o other.nc \
+    --trace other.csv --set solver.method=trapezoid --set solver.step=0.01
+refused "a full disk" 4 'No space left on device' run pair.yaml -q -o other.nc --trace /dev/full --force
+
+run steady "$root/cases/demo.yaml" -q -o steady.nc --trace steady.csv --set steady.tolerance=0.05 \
+    --set steady.multipliers=false --set "fish[*].nodes=9" --set time.shedding_interval=0.05
+check "steady --trace: exit 0" test "$code" = 0
+check "steady --trace: a line for each step" grep -q '^20,.*,accepted,' steady.csv
+
+# a run that fails ends with the attempts of its last step
+cat >turn.yaml <<'CASE'
+format: 1
+preset: published
+time: {end: 1, shedding_interval: 0.01}
+fish: [{name: fish, start: {heading: 45}, control: {law: heading, desired_heading: 135}}]
+CASE
+run run turn.yaml -q -o failed.nc --trace failed.csv
+check "a failing run: exit 1" test "$code" = 1
+check "a failing run: its last attempts are in the trace" bash -c 'tail -n 1 failed.csv | grep -qE "newton,.*gamma\[4\]"'
+finish
