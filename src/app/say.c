@@ -116,8 +116,8 @@ void say_progress_steady(const struct steady_progress *now, void *data) {
 
 void say_progress_study(const struct study_progress *now, void *data) {
     struct progress *const progress = data;
-    if (progress->terminal && now->n_running == 0 && !now->checked) {
-        say_progress_end(progress);  // a report follows
+    if (progress->terminal && (now->checked ? now->n_checked == now->n_members : now->n_running == 0)) {
+        say_progress_end(progress);  // a report follows, or the members run
         return;
     }
     if (progress->checked != now->checked) progress->tenth = 0;

@@ -158,7 +158,9 @@ enum status study_folder_watch(struct study_watch *watch, int n_checked) {
         return status_fail(STATUS_STOPPED, "stopped %s while the members were %s: none of them has run",
                            simulate_stopped_by(options->stop), watch->what);
     }
-    if (!options->progress || now < watch->reported + between_reports) return STATUS_OK;
+    // the last report, after which a line on a terminal is cleared, follows any other
+    const bool is_last = n_checked == watch->n && watch->reported > watch->started;
+    if (!options->progress || (now < watch->reported + between_reports && !is_last)) return STATUS_OK;
     const struct study_progress progress = {.n_members = watch->n,
                                             .checked = watch->what,
                                             .n_checked = n_checked,
