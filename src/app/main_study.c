@@ -117,7 +117,7 @@ static enum status write_scripts(const struct case_values *values, const struct 
     TRY(say_begin(&page));
     const enum status status = study_slurm(request->arena, values, &options, bundle, request->strict, page.stream);
     say_progress_end(&progress);
-    return say_end(&page, request->quiet ? NULL : stdout, status);
+    return say_end(&page, stdout, status);
 }
 
 /* Estimate the errors of a case: run all members, run some members of the first plan, or write the scripts. */

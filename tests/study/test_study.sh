@@ -108,8 +108,8 @@ check a_task_has_a_bundle eval 'has cluster/array.sbatch "--array=0-1" && has cl
 printf '#!/bin/sh\necho "$*" >>jobs; wc -l <jobs\n' >sbatch && chmod +x sbatch
 check the_results_wait_for_the_members eval 'grep -qE "members: job 1; results: job 2, .*/cluster/study.txt and study.nc" \
     <(PATH=.:$PATH sh cluster/submit.sh -p few) && grep -q "^--parsable -p few .*/array.sbatch" jobs && has jobs =afterany:1'
-echo mine >alone/array.sbatch
-refused scripts_of_others_are_kept 4 'was not written by shoal study --slurm' study small.yaml --slurm -o alone
+mkdir others && echo mine >others/array.sbatch
+refused scripts_of_others_are_kept 4 'was not written by shoal study --slurm' study small.yaml --slurm -o others
 # the actions of a task, without Slurm
 SLURM_ARRAY_TASK_ID=0 sh cluster/array.sbatch >/dev/null 2>&1
 check a_task_runs_the_members_of_its_bundle test -e cluster/member-0003.nc -a ! -e cluster/member-0004.nc
