@@ -247,24 +247,22 @@ TEST(cross_flow_drag_of_a_strip_is_the_suction_of_its_side_edges) {
     static const double suction[][2] = {{0.05, 3.079}, {0.1, 3.018}, {0.25, 2.842}, {0.5, 2.574},
                                         {1, 2.136},    {2, 1.551},   {4, 0.967},    {8, 0.537}};
     for (size_t i = 0; i < sizeof suction / sizeof *suction; i++) {
-        for (int is_thick = 0; is_thick < 2; is_thick++) {
-            struct setup setup = setup_with(
-                TIME
-                "wake: {shedding: sheet}\nsheet: {curve: smooth}\n"
-                "fish: [{length: 2, nodes: 9, sheet_points: 101, force: pressure, pressure: {span: finite},\n"
-                "        body: {depth: %g}, drag: {normal: 3}, added_mass: {extent: %s}}]\n",
-                suction[i][0], is_thick ? "thickness" : "depth");
-            const struct fish *const fish = setup.school->fish;
-            const double flat = 1000 * 3 * 2 * suction[i][0] * (2.0 / 8) / 2;
-            for (int k = 0; k < fish->n_edges; k++) {
-                NEAR(fish->drag_normal[k] / flat, suction[i][1] / acos(-1), 0, 0.012);
-                const struct edge edge = {.t = {1, 0}, .n = {0, 1}};
-                double force[2], friction[2];
-                drag_force(fish, k, &edge, (const double[]){0, -0.2}, force, friction);
-                NEAR(force[1], fish->drag_normal[k] * 0.04, 0, 1e-14);
-            }
-            school_clear(&setup);
+        struct setup setup =
+            setup_with(TIME
+                       "wake: {shedding: sheet}\nsheet: {curve: smooth}\n"
+                       "fish: [{length: 2, nodes: 9, sheet_points: 101, force: pressure, pressure: {span: finite},\n"
+                       "        body: {depth: %g}, drag: {normal: 3}}]\n",
+                       suction[i][0]);
+        const struct fish *const fish = setup.school->fish;
+        const double flat = 1000 * 3 * 2 * suction[i][0] * (2.0 / 8) / 2;
+        for (int k = 0; k < fish->n_edges; k++) {
+            NEAR(fish->drag_normal[k] / flat, suction[i][1] / acos(-1), 0, 0.012);
+            const struct edge edge = {.t = {1, 0}, .n = {0, 1}};
+            double force[2], friction[2];
+            drag_force(fish, k, &edge, (const double[]){0, -0.2}, force, friction);
+            NEAR(force[1], fish->drag_normal[k] * 0.04, 0, 1e-14);
         }
+        school_clear(&setup);
     }
 }
 
