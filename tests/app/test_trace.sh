@@ -59,7 +59,10 @@ cat >turn.yaml <<'CASE'
 format: 1
 preset: published
 time: {end: 1, shedding_interval: 0.01}
-fish: [{name: fish, start: {heading: 45}, control: {law: heading, desired_heading: 135}}]
+wake: {removed_circulation: dropped}
+sheet: {kutta_ramp: 0.5}
+fish: [{name: fish, start: {heading: 45}, wave: {ramp: 0}, drag: {normal: 0.5},
+        control: {law: heading, desired_heading: 135, filter: 1}}]
 CASE
 run run turn.yaml -q -o failed.nc --trace failed.csv
 check "a failing run: exit 1" test "$code" = 1

@@ -116,8 +116,8 @@ TEST(every_event_is_as_costly_as_those_measured_after_the_first) {
 
 TEST(a_long_wake_is_extrapolated_from_a_short_one) {
     NEEDS_TRUE_COSTS();
-    // 200,000 vortices, of which whole events cost seconds; and a direct sum, which grows with the square of the number.
-    // With finite span the first estimate is 2.4 times too low after 0.1 s
+    // 200,000 vortices, of which whole events cost seconds; and a direct sum, which grows with the square of the
+    // number. With finite span the first estimate is 2.4 times too low after 0.1 s
     static const char *const texts[] = {
         "time: {end: 4000, shedding_interval: 0.02}\nwake: {lifetime: 4000}\nfish: [{nodes: 5, pressure: {span: "
         "infinite}}]\n",
