@@ -259,8 +259,11 @@ TEST(an_event_of_many_steps_tells_its_progress_in_between) {
         .path = *state, .overwrite = 1, .command = "test", .progress = count_between};
     n_between = 0;
     last_told = 0;
-    run_into("time: {end: 0.04, shedding_interval: 0.02}\nsolver: {method: rk4, step: 4e-5}\nfish: [{}]\n", &options,
-             STATUS_OK);
+    // a body soft enough for an explicit step of 4e-5 s
+    run_into(
+        "time: {end: 0.04, shedding_interval: 0.02}\nsolver: {method: rk4, step: 4e-5}\n"
+        "fish: [{force: reactive, nodes: 7, body: {modulus: 1e4}}]\n",
+        &options, STATUS_OK);
     // 500 steps from event to event; the fifth report of each is at the event
     assert_int_equal(n_between, 2 * 4);
 }
