@@ -159,11 +159,11 @@ rows = [row for row in csv.DictReader(open("compared/error.csv")) if row["key"] 
 assert [row["quantity"] for row in rows] == ["speed", "ratio_speed", "change_speed"], rows
 assert abs(float(rows[1]["error"]) / float(study["bar_ratio_speed"][0]) - 1) < 1e-2
 end
-run error soft.yaml --of speed --no-confirm -o along --sweep 'fish[*].body.modulus=1e7,2e7' --against first
+run error soft.yaml --of speed --no-confirm -o from_first --sweep 'fish[*].body.modulus=1e7,2e7' --against first
 check along_a_sweep_ratios_have_a_table eval "grep -qx 'Ratios to point 0:' out && grep -qx 'Differences from point 0:' out"
 check the_ratio_along_a_sweep_is_that_of_the_cases /usr/bin/python3 -c "
 import netCDF4
-one, all = (netCDF4.Dataset(name + '/study.nc')['stated_ratio_speed'][:].ravel() for name in ('compared', 'along'))
+one, all = (netCDF4.Dataset(name + '/study.nc')['stated_ratio_speed'][:].ravel() for name in ('compared', 'from_first'))
 assert list(all) == [1, one[0]], (one, all)"
 refused a_case_or_a_point_or_a_fish 2 '--against 2e7: expects the file of a case, FISH=FISH' error soft.yaml --of speed --against 2e7
 refused no_such_point 2 'error.against: 3e7 is neither `first` nor a value of fish[*].body.modulus' \
