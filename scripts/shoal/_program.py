@@ -276,7 +276,7 @@ def error(case, of, within: float | None = None, models: bool = False, against=N
 
     of: a quantity or a list of quantities, as "steady_speed". within: refine until the relative errors are smaller.
     models: repeat the numbers with other choices of the model. against: the path of another case, "FISH=FISH", or along
-    a sweep "first" or another value of the swept key: adds the quantities ratio_... and change_..., whose errors are those
+    a sweep "first" or another value of the swept key: adds the quantities ``ratio_...`` and ``change_...``, whose errors are those
     of the comparison: what both share cancels.
     path: of the folder of the members, study.nc and error.csv (None: the name of the case with -error). An error that
     cannot be made smaller than within is a shoal.Error.
