@@ -187,10 +187,10 @@ enum status main_study(const struct request *request) {
 /* Set what the quantities are compared with: the file of a case, or a word that the case itself understands. */
 static enum status set_against(const struct request *request, const struct case_values *values,
                                struct sweep_error *error) {
-    const char *const against = request->against, *const ending = strrchr(against, '.');
+    const char *const against = request->against;
     error->against = (char *)(uintptr_t)against;
     error->against_kind = strchr(against, '=') ? AGAINST_FISH : AGAINST_POINT;
-    if (!ending || (strcmp(ending, ".yaml") != 0 && strcmp(ending, ".yml") != 0)) {
+    if (!sweep_error_is_file(against)) {
         if (error->against_kind == AGAINST_FISH || values->n_axes > 0) return STATUS_OK;
         return status_fail(STATUS_CASE,
                            "--against %s: expects the file of a case, FISH=FISH, or with --sweep `first` or a value of "

@@ -11,6 +11,7 @@
 
 #include "base/version.h"
 #include "case/case_table.h"
+#include "case/sweep_error.h"
 
 enum { MAX_INCLUDES = 64, MAX_INCLUDE_DEPTH = 8 };
 
@@ -173,8 +174,7 @@ void case_merge_against(struct case_tree *tree, const char *place, struct yaml_e
     const struct yaml_node *const map = yaml_tree_find(tree->root, "error");
     struct yaml_entry *const entry = map && map->kind == YAML_MAP ? yaml_tree_entry(map, "against", 7) : NULL;
     const struct yaml_node *const node = entry ? entry->value : NULL;
-    const char *const ending = node && node->kind == YAML_SCALAR ? strrchr(node->text, '.') : NULL;
-    if (!ending || (strcmp(ending, ".yaml") != 0 && strcmp(ending, ".yml") != 0)) return;
+    if (!node || node->kind != YAML_SCALAR || !sweep_error_is_file(node->text)) return;
 
     // relative to the folder, which ends at the last slash
     const char *const slash = node->text[0] == '/' ? NULL : strrchr(place, '/');

@@ -58,6 +58,11 @@ double sweep_error_order(const struct case_values *values, const struct sweep_er
 
 // ---- reading
 
+bool sweep_error_is_file(const char *against) {
+    const char *const ending = strrchr(against, '.');
+    return ending && (strcmp(ending, ".yaml") == 0 || strcmp(ending, ".yml") == 0);
+}
+
 /* Read the levels of one key: a list of numbers, or default. */
 static void read_levels(struct arena *arena, struct sweep_error_levels *levels, const struct yaml_node *node,
                         struct yaml_errors *errors) {

@@ -77,6 +77,9 @@ struct sweep_error {
     struct sweep_error_levels *levels; /* of the keys that are varied; none: of all     (n_keys) */
 };
 
+/* Whether the text of `against` names the file of a case: it ends in .yaml or .yml. */
+bool sweep_error_is_file(const char *against);
+
 /* Read `error` of a case. */
 void sweep_error_read(struct case_values *values, const struct yaml_node *root, struct yaml_errors *errors);
 

@@ -147,3 +147,11 @@ TEST(an_error_is_shown_as_it_is_written) {
     s = parse_with(minimal, "error={of: speed, keys: [smoothing]}", NULL, NULL);
     assert_non_null(strstr(case_show(s.arena, &s), "error: {of: [speed], keys: {smoothing: default}}"));
 }
+
+TEST(a_file_to_compare_with_ends_in_yaml) {
+    assert_true(sweep_error_is_file("alone.yaml"));
+    assert_true(sweep_error_is_file("../a.b/alone.yml"));
+    assert_false(sweep_error_is_file("first"));
+    assert_false(sweep_error_is_file("1.5e6"));
+    assert_false(sweep_error_is_file("a.yaml=b"));
+}
