@@ -858,7 +858,10 @@ TEST(what_cannot_be_compared_is_refused) {
         struct error_sweep *sweep;
         struct case_values values;
         enum status status = case_parse(&values, text, strlen(text), "x.yaml", NULL, 0, NULL);
-        if (status == STATUS_OK) status = error_plan_create(test_arena(), &sweep, &values, NULL);
+        if (status == STATUS_OK) {
+            arena_move(values.arena, test_arena());
+            status = error_plan_create(test_arena(), &sweep, &values, NULL);
+        }
         assert_int_equal(status, STATUS_CASE);
         if (!strstr(status_message(), examples[i].message)) fail_msg("%s: %s", examples[i].error, status_message());
     }
