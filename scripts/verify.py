@@ -38,7 +38,8 @@ conservation law, a symmetry, or a refined run. Equation numbers refer to doc/mo
 
 *error* is the difference from the reference, relative if marked (rel); *order* is the observed order of convergence,
 log2 of the ratio of two errors at a refinement by two, or a slope. A row without a bound is not a check. The column
-*reference* gives the reason of an unusual bound.
+*reference* gives the reason of an unusual bound. A bound marked (regression) is drawn round the result that the program
+had: it shows a change of the program, and only the ratio itself compares the program with nature.
 """
 
 # per section: heading and text above the table
@@ -204,10 +205,9 @@ the wall. A vortex pair (`wake.vortices`) parts at a wall as in potential flow."
     "validation": ("Against experiment and Navier-Stokes", """\
 `force: pressure` with the limit of suction and the boundary-layer friction (model.md 9 and 15) against real fluids: the
 cases foil_anderson, foil_heave and swimmer_navier_stokes of cases/, with other keys at defaults. The references are in
-tests/verify/data with their sources. *Error* is the ratio of the result to the reference. *Bound* is the permitted range
-of the ratio, drawn round the result: it shows changes of the program, not the error of the source. Two foils
-(school_navier_stokes.csv) are compared by what the other foil changes; side by side the bound is 15 % and the error of the
-source. Reasons of the differences:
+tests/verify/data with their sources. *Error* is the ratio of the result to the reference, and it is the validation.
+Two foils (school_navier_stokes.csv) are compared by what the other foil changes; side by side the bound is 15 % and the
+error of the source. Reasons of the differences:
 
 * *Foil, thrust.* 3 to 13 % too small for St from 0.2 to 0.5: the sheet has no thickness, which increases the thrust in the
   inviscid theory of the same article (dashed), and the friction of a steady boundary layer takes 3 to 6 %. At psi = 90 that

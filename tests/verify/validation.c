@@ -1,7 +1,6 @@
 /* validation.c: the section "validation": the cases with foils and a swimmer with force: pressure against an experiment
- * and Navier-Stokes solutions (tests/verify/data). The ratios are the validation. Their bounds are drawn round the
- * results, so that a change of the program is seen (regression); only the bounds of two foils contain the error of the
- * source. */
+ * and Navier-Stokes solutions (tests/verify/data). The ratios are the validation, and their bounds are
+ * regressions, drawn round the results; only the bounds of two foils side by side contain the error of the source. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -140,10 +139,10 @@ static void anderson(void) {
         // r: largest velocity of the tail by pitch over the speed; beyond 0.6 a run warns (doc/output.md)
         const double r = foil.pitch * 2 * pi * 2.0 / 3 / foil.speed;
         const char *const name = "foil, psi %d, St %.1f, r %.2f: %s coefficient";
-        verify_ratio(verify_text(name, psi, strouhal, r, "thrust"), source, thrust, period.thrust / pressure, least,
-                     most);
-        verify_ratio(verify_text(name, psi, strouhal, r, "power"), source, power, period.power / pressure / foil.speed,
-                     least, most);
+        verify_regression(verify_text(name, psi, strouhal, r, "thrust"), source, thrust, period.thrust / pressure,
+                          least, most);
+        verify_regression(verify_text(name, psi, strouhal, r, "power"), source, power,
+                          period.power / pressure / foil.speed, least, most);
         if (verify_is_fast()) continue;
         const struct period attached = run_anderson(&foil, psi, "fish[0].pressure.suction_limit=0");
         const char *const figure = psi == 90 ? "foil_thrust_90" : "foil_thrust_75";
@@ -180,7 +179,7 @@ static struct reference reference_of(const struct table *table, const char *flow
 static void compare_flow(const struct table *table, const char *flow, const char *quantity, const char *text,
                          double obtained, double least, double most) {
     const struct reference reference = reference_of(table, flow, quantity);
-    verify_ratio(verify_text("%s: %s", flow, text), reference.source, reference.value, obtained, least, most);
+    verify_regression(verify_text("%s: %s", flow, text), reference.source, reference.value, obtained, least, most);
 }
 
 // the thrust is the difference of a large suction and a large friction: the ratio has the widest range
@@ -292,8 +291,8 @@ static void trout(void) {
         for (int i = 0; i < 3; i++) {
             const double f = frequencies[i], measured = (f - slow) / 1.29 / f;
             const double stride = gait_stride(&gait, 0.01 * length, f, 1);
-            verify_ratio(verify_text("trout of %g m, %g Hz: stride, lengths a beat", 0.01 * length, f),
-                         "Webb et al. (1984), regression", measured, stride, 0.9, 1.3);
+            verify_regression(verify_text("trout of %g m, %g Hz: stride, lengths a beat", 0.01 * length, f),
+                              "Webb et al. (1984)", measured, stride, 0.9, 1.3);
             verify_point("trout", verify_text("measured, %g m", 0.01 * length), f, measured);
             verify_point("trout", verify_text("here, %g m", 0.01 * length), f, stride);
             if (k == 1) {
@@ -334,8 +333,8 @@ static void mackerel_and_lamprey(void) {
     for (int i = 0; i < 2; i++) {
         struct gait gait = fish[i].gait;
         const double measured = gait.excursion / fish[i].strouhal;
-        verify_ratio(verify_text("%s: stride, lengths a beat", fish[i].name), fish[i].source, measured,
-                     gait_stride(&gait, fish[i].length, fish[i].frequency, 1), 0.8, 1.1);
+        verify_regression(verify_text("%s: stride, lengths a beat", fish[i].name), fish[i].source, measured,
+                          gait_stride(&gait, fish[i].length, fish[i].frequency, 1), 0.8, 1.1);
         for (int k = -1; k <= 1; k += 2) {
             gait.depth = (1 + 0.25 * k) * fish[i].gait.depth;
             verify_show(verify_text("the same, depth %g of its length", gait.depth), "",
@@ -415,11 +414,10 @@ static void two_foils(void) {
             peak[k] = atan2(of[1] - of[3], of[0] - of[2]) * 180 / pi;
         }
         const char *const name = q == 0 ? "CP" : "CT";
-        // regression
-        verify_ratio(verify_text("foils in line, gap 1 c: change of %s over the phase, amplitude", name), source,
-                     amplitude[0], amplitude[1], 1 / 1.6, 1.6);
-        verify_value(verify_text("foils in line, gap 1 c: phase of most %s, degree", name), source, peak[0], peak[1],
-                     40);
+        verify_regression(verify_text("foils in line, gap 1 c: change of %s over the phase, amplitude", name), source,
+                          amplitude[0], amplitude[1], 1 / 1.6, 1.6);
+        verify_value(verify_text("foils in line, gap 1 c: phase of most %s, degree", name),
+                     "Navier-Stokes, Re 1000; the bound is a regression", peak[0], peak[1], 40);
     }
 }
 

@@ -91,15 +91,25 @@ void verify_order(const char *quantity, const char *source, double order, double
     printf("%-8s %-58s order %s\n", "", "", obtained);
 }
 
-void verify_ratio(const char *quantity, const char *source, double reference, double obtained, double least,
-                  double most) {
-    char texts[4][32];
+static void check_ratio(const char *quantity, const char *source, double reference, double obtained, double least,
+                        double most, const char *kind) {
+    char texts[4][48];
     const double ratio = obtained / reference;
     snprintf(texts[0], sizeof texts[0], "%.4g", reference);
     snprintf(texts[1], sizeof texts[1], "%.4g", obtained);
     snprintf(texts[2], sizeof texts[2], "x %.3f", ratio);
-    snprintf(texts[3], sizeof texts[3], "x %.2f to %.2f", least, most);
+    snprintf(texts[3], sizeof texts[3], "x %.2f to %.2f%s", least, most, kind);
     row(quantity, source, texts[0], texts[1], texts[2], texts[3], "", judge(ratio >= least && ratio <= most));
+}
+
+void verify_ratio(const char *quantity, const char *source, double reference, double obtained, double least,
+                  double most) {
+    check_ratio(quantity, source, reference, obtained, least, most, "");
+}
+
+void verify_regression(const char *quantity, const char *source, double reference, double obtained, double least,
+                       double most) {
+    check_ratio(quantity, source, reference, obtained, least, most, " (regression)");
 }
 
 void verify_show(const char *quantity, const char *source, double obtained) {

@@ -50,9 +50,15 @@ void verify_zero(const char *quantity, const char *source, double obtained, doub
 /* A check: an observed order of convergence between least and most. */
 void verify_order(const char *quantity, const char *source, double order, double least, double most);
 
-/* A check: the ratio of the result to a measured or more accurate value is between least and most. */
+/* A validation: the ratio of the result to a measured or more accurate value is between least and most, which contain
+ * what the source says of its error or its range. */
 void verify_ratio(const char *quantity, const char *source, double reference, double obtained, double least,
                   double most);
+
+/* A regression: as verify_ratio, but least and most are drawn round the result that the program had. They show that it
+ * has changed, and say nothing about the water; the ratio itself is the validation. The table says "regression". */
+void verify_regression(const char *quantity, const char *source, double reference, double obtained, double least,
+                       double most);
 
 /* No check: a number that the reader wants to see. */
 void verify_show(const char *quantity, const char *source, double obtained);
