@@ -15,7 +15,7 @@ import numpy as np
 
 from . import _library as lib
 from ._draw import picture_of, snapshot_of
-from ._library import CaseError, check, choice_of, index_of, kind, number_of, numbers_of
+from ._library import CaseError, SolverError, check, choice_of, index_of, kind, number_of, numbers_of
 from ._run import Run
 
 
@@ -396,17 +396,19 @@ class _Swim:
                 self.run = self._kept.clone()
 
     def _advance(self):
-        """Advance by one action, or to the end; returns whether the solver has failed. The GIL is released for all
-        events together."""
+        """Advance by one action, or to the end; returns the message of a failure of the solver, or None. The GIL is
+        released for all events together."""
         interval, end = self._interval, self._end
         event = round(self.event.time / interval)
-        with self.run._using() as pointer:
-            code = lib.library.shoal_advance(pointer, min((event + self._n_steps) * interval, end))
-        self.event.begin(self.run)
-        if code == -4:
-            return True
-        check(code)
-        return False
+        failure = None
+        try:
+            with self.run._using() as pointer:
+                lib.call(lib.library.shoal_advance, pointer, min((event + self._n_steps) * interval, end))
+        except SolverError as error:
+            failure = str(error)
+        finally:  # also after Ctrl-C, which leaves the run at an event
+            self.event.begin(self.run)
+        return failure
 
     def _ended(self):
         return self.event.time >= self._end
@@ -481,14 +483,14 @@ class SwimEnv(_Swim, _from("gymnasium", "Env", object)):
         if self._last is None:
             raise CaseError("step: call reset() first")
         self.swimmer.act(action)
-        info, failed = {}, self._advance()
-        if failed:
-            info["failure"] = lib.message()
+        info, failure = {}, self._advance()
+        if failure:
+            info["failure"] = failure
         else:
             self._last = self.swimmer.see()
         info["time"] = self.event.time
-        reward = 0.0 if failed else self.swimmer.earn()
-        return self._last, reward, failed or self._is_lost(self.swimmer), self._ended(), info
+        reward = 0.0 if failure else self.swimmer.earn()
+        return self._last, reward, bool(failure) or self._is_lost(self.swimmer), self._ended(), info
 
 
 def _cores():
@@ -652,13 +654,13 @@ class SchoolEnv(_Swim, _from("pettingzoo", "ParallelEnv", object)):
             raise CaseError(f"step: no action of {missing[0]}: actions are a dict with {', '.join(agents)}")
         for name in agents:
             self.swimmers[name].act(actions[name])
-        failed = self._advance()
-        if not failed:
+        failure = self._advance()
+        if not failure:
             self._last = {name: self.swimmers[name].see() for name in agents}
-        rewards = {name: 0.0 if failed else self.swimmers[name].earn() for name in agents}
-        over = failed or any(self._is_lost(self.swimmers[name]) for name in agents)
+        rewards = {name: 0.0 if failure else self.swimmers[name].earn() for name in agents}
+        over = bool(failure) or any(self._is_lost(self.swimmers[name]) for name in agents)
         ended = self._ended()
-        infos = {name: {"failure": lib.message()} if failed else {} for name in agents}
+        infos = {name: {"failure": failure} if failure else {} for name in agents}
         if over or ended:
             self.agents = []
         return dict(self._last), rewards, dict.fromkeys(agents, over), dict.fromkeys(agents, ended), infos

@@ -512,6 +512,18 @@ class Words(unittest.TestCase):
             timer.join()
             self.assertEqual((run.time, run["x"].tobytes()), (0, whole))
 
+        # an environment too, and its run is at an event
+        environment = shoal.SwimEnv(long)
+        environment.reset()
+        timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        started = time.monotonic()
+        with self.assertRaises(KeyboardInterrupt):
+            environment.step(environment.action_space.sample())
+        self.assertLess(time.monotonic() - started, 30)
+        timer.join()
+        self.assertEqual(environment.run.time, 0)
+
         # the set-up of the copy takes as long as that of the run
         large = shoal.Run({**PAIR, "fish": [{"nodes": 500}]})
         for copied in (large.clone, lambda: copy.copy(large), lambda: copy.deepcopy(large)):
