@@ -463,6 +463,9 @@ TEST(what_can_have_no_steady_state_is_refused_with_the_reason) {
                        "1.5 gusts");
     steady_setup_fails(COARSE "fluid: {gust: {amplitude: 0.1, frequency: 1.001}}\nfish: [{" FISH "}]\n", STATUS_CASE,
                        "1.001 gusts");
+    struct steady_setup rounded; /* a frequency that is an integer but for its rounding is taken */
+    steady_setup_open(&rounded,
+                      COARSE "fluid: {gust: {amplitude: 0.1, frequency: 1.000000000001}}\nfish: [{" FISH "}]\n");
     steady_setup_fails(COARSE "fluid: {shear: 0.1}\nfish: [{" FISH "}]\n", STATUS_CASE, "shear");
     steady_setup_fails(COARSE "fluid: {walls: [-1]}\nfish: [{" FISH "}]\n", STATUS_CASE, "beside a wall");
     steady_setup_fails(COARSE "fish: [{" FISH ", control: {waypoints: [[9, 0]]}}]\n", STATUS_CASE, "waypoints");
