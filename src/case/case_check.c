@@ -496,9 +496,10 @@ static void check_pressure(const struct check *check) {
                       no_effect[] = "has no effect with 'force: pressure': remove the key";
     complain_if(is_given(check, "fish.added_mass.coefficient"), check, "fish.added_mass.coefficient", no_effect);
     // under defaults the key may serve fish with another force
-    bool is_default = true;
-    const bool is_written = case_merge_value(check->tree, extent, check->index, &is_default) != NULL && !is_default;
-    complain_if(fish->added_mass.extent == EXTENT_THICKNESS && is_written, check, extent, no_effect);
+    bool is_default, serves_another = false;
+    const bool is_written = case_merge_value(check->tree, extent, check->index, &is_default) != NULL;
+    for (int f = 0; f < school->n_fish; f++) serves_another |= is_default && school->fish[f].force != FORCE_PRESSURE;
+    complain_if(fish->added_mass.extent == EXTENT_THICKNESS && is_written && !serves_another, check, extent, no_effect);
     complain_if(fish->sensors.n > 0 && (fabs(fluid->shear) > 0 || fluid->gust_profile != GUST_UNIFORM), check,
                 "fish.sensors",
                 "the pressure on a side needs a stream with a potential: remove fluid.shear and fluid.gust.profile");
