@@ -217,7 +217,7 @@ static enum status main_choose(int argc, char **argv, struct arena **arena) {
 
     // getopt starts after the name of the command
     enum status status = STATUS_OK;
-    const int is_done = main_parse(&commands[found], argc - 1, argv + 1, &request, &status);
+    const bool is_done = main_parse(&commands[found], argc - 1, argv + 1, &request, &status);
     return is_done || status != STATUS_OK ? status : commands[found].run(&request);
 }
 

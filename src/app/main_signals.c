@@ -68,7 +68,7 @@ void main_leave_no_part(void) {
 enum status main_limit_wall_time(const char *text) {
     int hours, minutes, seconds, length = 0;
     const int n = sscanf(text, "%5d:%2d:%2d%n", &hours, &minutes, &seconds, &length);
-    const int is_time =
+    const bool is_time =
         n == 3 && text[length] == '\0' && hours >= 0 && minutes >= 0 && seconds >= 0 && minutes < 60 && seconds < 60;
     const int total = is_time ? (hours * 60 + minutes) * 60 + seconds : 0;
     if (total == 0) return status_fail(STATUS_CASE, "--max-wall %s: expects HH:MM:SS, such as 23:50:00", text);

@@ -76,7 +76,7 @@ static enum status report_begin(struct report *report) {
 
 /* Print tables and warnings to standard output. If quiet, print warnings to standard error, and after a failure also
  * the tables, because the message refers to the tables. */
-static enum status report_end(struct report *report, int is_quiet, enum status status) {
+static enum status report_end(struct report *report, bool is_quiet, enum status status) {
     status = say_end(&report->tables, !is_quiet ? stdout : status == STATUS_OK ? NULL : stderr, status);
     return say_end(&report->warnings, is_quiet ? stderr : stdout, status);
 }

@@ -61,7 +61,7 @@ static enum status read_numbers(const char *option, const char *text, const char
     for (int i = 0; i < n; i++) {
         char word[64];
         const size_t length = strcspn(at, ",");
-        const int is_last = i + 1 == n;
+        const bool is_last = i + 1 == n;
         snprintf(word, sizeof word, "%.*s", (int)(length < sizeof word ? length : sizeof word - 1), at);
         if ((at[length] == ',') == is_last || !text_number(word, &number[i]) || !isfinite(number[i])) {
             return status_fail(STATUS_CASE, "%s %s: expects %s", option, text, expected);
@@ -85,7 +85,7 @@ enum status main_field(const struct request *request) {
     // RUN-field.nc of RUN.nc
     if (!path) {
         const size_t length = strlen(run);
-        const int has_ending = length > 3 && strcmp(run + length - 3, ".nc") == 0;
+        const bool has_ending = length > 3 && strcmp(run + length - 3, ".nc") == 0;
         path = arena_text(request->arena, "%.*s-field.nc", (int)(has_ending ? length - 3 : length), run);
     }
 

@@ -279,21 +279,21 @@ enum status fish_school_create(struct arena *parent, struct school **school,
                                const struct school_parameters *parameters) {
     *school = NULL;
     struct arena *const arena = arena_create(parent, "a school");
-    struct school *new;
-    NEW(arena, new, 1);
-    NEW(arena, new->fish, parameters->n_fish);
-    new->arena = arena;
-    new->n_fish = parameters->n_fish;
-    fluid_set(new, parameters);
-    wake_set(new, parameters);
-    for (int f = 0; f < new->n_fish; f++) fish_fill(new, f, parameters);
+    struct school *created;
+    NEW(arena, created, 1);
+    NEW(arena, created->fish, parameters->n_fish);
+    created->arena = arena;
+    created->n_fish = parameters->n_fish;
+    fluid_set(created, parameters);
+    wake_set(created, parameters);
+    for (int f = 0; f < created->n_fish; f++) fish_fill(created, f, parameters);
 
     // the slices of the unknowns, fish after fish
-    for (int f = 0; f < new->n_fish; f++) {
-        const struct fish *const fish = &new->fish[f];
+    for (int f = 0; f < created->n_fish; f++) {
+        const struct fish *const fish = &created->fish[f];
         const int n = fish->n_nodes, n_momenta = fish->force == FORCE_PRESSURE ? n : 0;
-        struct layout *const at = &new->fish[f].at;
-        at->x = new->n_unknowns;
+        struct layout *const at = &created->fish[f].at;
+        at->x = created->n_unknowns;
         at->y = at->x + n;
         at->vx = at->y + n;
         at->vy = at->vx + n;
@@ -304,20 +304,20 @@ enum status fish_school_create(struct arena *parent, struct school **school,
         at->gamma = at->ay + n;
         at->circulation = at->gamma + fish->n_sheet;
         at->phi0 = at->circulation + 1;
-        at->end = new->n_unknowns = at->phi0 + 1;
+        at->end = created->n_unknowns = at->phi0 + 1;
     }
 
     struct arena *const scratch = arena_create(arena, "the start of a school");
-    enum status status = refuse_overlap(new, scratch);
+    enum status status = refuse_overlap(created, scratch);
     arena_free(scratch);
 
     // the sheets take most of the time: last, and until a stop
-    for (int f = 0; f < new->n_fish &&status == STATUS_OK; f++) {
-        status = fish_sheet_set(arena, &new->fish[f], f, parameters, new->finite);
+    for (int f = 0; f < created->n_fish && status == STATUS_OK; f++) {
+        status = fish_sheet_set(arena, &created->fish[f], f, parameters, created->finite);
     }
 
     if (status == STATUS_OK) {
-        *school = new;
+        *school = created;
     } else {
         arena_free(arena);
     }

@@ -27,7 +27,7 @@ bool flow_has_free_sheets(const struct flow *flow) {
 double flow_square(const struct flow *flow, enum flow_pair pair, const struct flow_class *target,
                    const struct flow_class *source) {
     const double delta = source->smoothing, e = source->sheet_smoothing;
-    const int is_body = pair == BODY_AT_BODY || pair == BODY_AT_WAKE;
+    const bool is_body = pair == BODY_AT_BODY || pair == BODY_AT_WAKE;
     if (!flow_has_free_sheets(flow)) return is_body ? e * e : delta * delta;
     switch (pair) {
         case BODY_AT_BODY: return (e * e + target->sheet_smoothing * target->sheet_smoothing) / 2;
@@ -48,7 +48,7 @@ const struct sources *flow_sources(const struct flow *flow, int g, const struct 
 
 struct kernel_pair flow_pair_of(const struct flow *flow, int f, int g, const struct flow_sum *sum) {
     const double square =
-        flow_square(flow, sum->pair, &flow->class[flow->class_of[f]], &flow -> class[flow->class_of[g]]);
+        flow_square(flow, sum->pair, &flow->classes[flow->class_of[f]], &flow->classes[flow->class_of[g]]);
     return flow->kernel->other(flow->school->fish[g].strip_depth, square);
 }
 
@@ -76,24 +76,24 @@ static void flow_find_classes(struct flow *flow) {
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         int c = 0;
-        while (c < flow->n_classes && fabs(flow->class[c].smoothing - fish->smoothing) > 0) c++;
+        while (c < flow->n_classes && fabs(flow->classes[c].smoothing - fish->smoothing) > 0) c++;
         flow->class_of[f] = c;
         if (c < flow->n_classes) continue;
-        flow->class[c] = (struct flow_class){.smoothing = fish->smoothing, .sheet_smoothing = fish->sheet_smoothing};
+        flow->classes[c] = (struct flow_class){.smoothing = fish->smoothing, .sheet_smoothing = fish->sheet_smoothing};
         flow->n_classes++;
     }
 
     int n_chunks = 0;
     for (int c = 0; c < flow->n_classes; c++) {
-        struct flow_class *const class = &flow->class[c];
-        class->points.first = flow->n_points;
+        struct flow_class *const kind = &flow->classes[c];
+        kind->points.first = flow->n_points;
         for (int f = 0; f < school->n_fish; f++) {
             if (flow->class_of[f] != c) continue;
             flow->points[f] = (struct range){flow->n_points, flow_n_points(&school->fish[f])};
             flow->n_points += flow->points[f].n;
             n_chunks += parallel_n_chunks(flow->points[f].n);
         }
-        class->points.n = flow->n_points - class->points.first;
+        kind->points.n = flow->n_points - kind->points.first;
     }
 
     NEW(flow->arena, flow->chunk, n_chunks);
@@ -116,7 +116,7 @@ struct flow *flow_create(struct arena *arena, const struct school *school) {
     NEW(arena, flow->wake_range, school->n_fish);
     NEW(arena, flow->fish, school->n_fish);
     NEW(arena, flow->class_of, school->n_fish);
-    NEW(arena, flow->class, school->n_fish);
+    NEW(arena, flow->classes, school->n_fish);
     flow_find_classes(flow);
     NEW(arena, flow->by_tree, 4 * flow->n_classes * flow->n_classes);
 
@@ -133,7 +133,7 @@ struct flow *flow_create(struct arena *arena, const struct school *school) {
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         struct flow_fish *const of = &flow->fish[f];
-        const int has_legs = flow->kernel->has_legs;
+        const bool has_legs = flow->kernel->has_legs;
         struct sources *const all[] = {&of->own,        &of->body,       &of->markers,
                                        &of->body_image, &of->wake_image, &of->markers_image};
         for (size_t i = 0; i < sizeof all / sizeof *all; i++) all[i]->arena = arena;
@@ -173,7 +173,8 @@ static void flow_place_wake(const struct flow *flow, const struct state *state, 
 static void flow_place_body(struct flow *flow, int f, const double *y) {
     const struct fish *const fish = &flow->school->fish[f];
     struct flow_fish *const of = &flow->fish[f];
-    const int n = fish->n_sheet, points = flow->points[f].first, has_legs = flow->kernel->has_legs;
+    const int n = fish->n_sheet, points = flow->points[f].first;
+    const bool has_legs = flow->kernel->has_legs;
     const double *const node_x = y + fish->at.x, *const node_y = y + fish->at.y;
     flow_from_nodes(flow, f, node_x, flow->x);
     flow_from_nodes(flow, f, node_y, flow->y);

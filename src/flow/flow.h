@@ -69,8 +69,8 @@ struct flow {
     bool has_sources;                  /* whether the sources have been placed */
 
     int n_classes;
-    struct flow_class *class; /*                                                      (n_classes) */
-    int *class_of;            /* of each fish                                         (n_fish) */
+    struct flow_class *classes; /*                                                      (n_classes) */
+    int *class_of;              /* of each fish                                         (n_fish) */
 
     /* points */
     struct range *points; /* of each fish, class after class                   (n_fish) */

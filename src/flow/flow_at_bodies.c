@@ -103,7 +103,7 @@ void flow_induce_other(const struct flow *flow, int f, int g, const struct flow_
 
 // ---- bodies
 
-static struct targets flow_targets(const struct flow *flow, int with_gradient) {
+static struct targets flow_targets(const struct flow *flow, bool with_gradient) {
     struct targets all = {
         .n = flow->n_points, .x = flow->x, .y = flow->y, .u = flow->u, .v = flow->v, .div = flow->div};
     if (with_gradient) {
@@ -131,14 +131,14 @@ static struct range range_overlap(struct range one, struct range other) {
 
 // own body and own wake
 static void induce_own(const struct flow *flow, const struct chunk *chunk, const struct targets *all,
-                       int with_gradient) {
+                       bool with_gradient) {
     const struct fish *const fish = &flow->school->fish[chunk->fish];
     const struct flow_fish *const of = &flow->fish[chunk->fish];
-    const struct flow_class *const class = &flow->class[flow->class_of[chunk->fish]];
+    const struct flow_class *const kind = &flow->classes[flow->class_of[chunk->fish]];
     const int first = flow->points[chunk->fish].first, is_sheet = flow_has_free_sheets(flow);
     const struct range control = range_overlap(chunk->at, (struct range){first, fish->n_control});
     const struct range tail = range_overlap(chunk->at, (struct range){first + flow_tail(fish), 1});
-    const double wake_square = flow_square(flow, WAKE_AT_BODY, class, class);
+    const double wake_square = flow_square(flow, WAKE_AT_BODY, kind, kind);
     const struct kernel_pair exact = flow->kernel->own(fish->strip_depth, 0);
     const struct kernel_pair smooth = flow->kernel->own(fish->strip_depth, wake_square);
     const struct sources *const seen = &of->wake.middles.sources;
@@ -156,7 +156,7 @@ static void induce_own(const struct flow *flow, const struct chunk *chunk, const
 
     // the middles of a sheet behind the control points, or the queue at all points; not at midpoints without own wake
     const int begin = is_sheet ? flow_midpoint(fish, 0) : 0, end = flow_midpoint(fish, 0), n = flow_n_points(fish);
-    const int is_felt = fish_feels_own_wake(fish);
+    const bool is_felt = fish_feels_own_wake(fish);
     const struct range parts[2] = {{begin, (is_felt ? n : end) - begin}, {flow_tail(fish), is_felt ? 0 : 1}};
     for (int i = 0; i < 2; i++) {
         const struct range part = {first + parts[i].first, parts[i].n};
@@ -167,8 +167,7 @@ static void induce_own(const struct flow *flow, const struct chunk *chunk, const
 
     // with point vortices, the slip at the tail includes the bound vortices
     at = points_of(flow, all, chunk->fish, tail);
-    const struct kernel_pair bound =
-        flow->kernel->own(fish->strip_depth, flow_square(flow, BODY_AT_WAKE, class, class));
+    const struct kernel_pair bound = flow->kernel->own(fish->strip_depth, flow_square(flow, BODY_AT_WAKE, kind, kind));
     kernel_induce(&bound, &of->own, (struct range){0, fish->n_sheet}, &at);
 }
 
@@ -184,7 +183,7 @@ static void induce_near(const struct flow *flow, int f, int g, const struct targ
     if (near.body.n > 0) kernel_induce(&wake, &middles->sources, (struct range){middles->n_released, 1}, at);
 }
 
-static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, int with_gradient) {
+static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, bool with_gradient) {
     if (with_gradient && flow->stop && *flow->stop) return;
     const struct school *school = flow->school;
     const struct targets all = flow_targets(flow, with_gradient);
@@ -236,14 +235,14 @@ static void flow_sum(struct flow *flow, const struct state *state, double t, con
     flow_select_by_tree(flow, false, flow->points);
     const struct targets all = flow_targets(flow, with_gradient);
     for (int c = 0; c < flow->n_classes; c++) {
-        struct targets at = kernel_targets_part(&all, flow->class[c].points);
+        struct targets at = kernel_targets_part(&all, flow->classes[c].points);
         struct sources *const places = &flow->places;
         places->n = 0;
         sources_append(places, at.n);
         for (int f = 0; f < flow->school->n_fish && flow->kernel->has_legs; f++) {
             if (flow->class_of[f] != c) continue;
-            memcpy(places->half + flow->points[f].first - flow->class[c].points.first, flow->school->fish[f].point_half,
-                   (size_t)flow->points[f].n * sizeof(double));
+            memcpy(places->half + flow->points[f].first - flow->classes[c].points.first,
+                   flow->school->fish[f].point_half, (size_t)flow->points[f].n * sizeof(double));
         }
         at.half = places->half;
 

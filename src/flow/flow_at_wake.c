@@ -64,12 +64,12 @@ static bool own_is_in_tree(const struct flow *flow, int f) {
 static void induce_own_body(const struct flow *flow, const struct state *state, int f, struct range which,
                             const struct targets *markers) {
     const struct fish *const fish = &flow->school->fish[f];
-    const struct flow_class *const class = &flow->class[flow->class_of[f]];
+    const struct flow_class *const kind = &flow->classes[flow->class_of[f]];
     const struct sources *const body = &flow->fish[f].body;
     const struct wake *const wake = &state->wake[f];
-    const int is_sheet = flow_has_free_sheets(flow);
+    const bool is_sheet = flow_has_free_sheets(flow);
     const struct kernel_pair pair =
-        flow->kernel->own(fish->strip_depth, is_sheet ? 0 : flow_square(flow, BODY_AT_WAKE, class, class));
+        flow->kernel->own(fish->strip_depth, is_sheet ? 0 : flow_square(flow, BODY_AT_WAKE, kind, kind));
     const struct direction direction = fish_direction(fish, &fish->tail_tangent, state->y);
     const double tail[2] = {state->y[fish->at.x + fish->n_nodes - 1], state->y[fish->at.y + fish->n_nodes - 1]};
     double x[MARKERS], y[MARKERS], square[MARKERS];
@@ -214,9 +214,9 @@ void flow_at_wake(struct flow *flow, const struct state *state) {
     for (int f = 0; f < school->n_fish; f++) {
         // set the velocity of its own wake at all markers of a fish
         if (flow->wake_range[f].n == 0) continue;
-        const struct flow_class *const class = &flow->class[flow->class_of[f]];
+        const struct flow_class *const kind = &flow->classes[flow->class_of[f]];
         const struct kernel_pair smooth =
-            flow->kernel->own(school->fish[f].strip_depth, flow_square(flow, WAKE_AT_WAKE, class, class));
+            flow->kernel->own(school->fish[f].strip_depth, flow_square(flow, WAKE_AT_WAKE, kind, kind));
         struct targets at = markers_of(flow, f, (struct range){0, flow->wake_range[f].n});
         double *const sums[] = {at.u, at.v, at.leg_u, at.leg_v, at.div, flow->wake_leg_div + flow->wake_range[f].first};
         at.div = sums[5];

@@ -29,7 +29,7 @@ struct moving {
     double follows;
     const struct stencil *line;  // leg d = along times the vector along the body, or to the tail
     double along;
-    int has_edge;  // whether the source is part of the edge force
+    bool has_edge;  // whether the source is part of the edge force
 };
 
 static void add_spanwise(const struct column *to, int n, const struct unit_values *values, double factor) {
@@ -42,7 +42,7 @@ static void add_spanwise(const struct column *to, int n, const struct unit_value
 // add the velocity of a leg, or of a change of a leg
 static inline __attribute__((always_inline)) void add_leg_to(const struct column *to, int n,
                                                              const struct unit_values *values, double dx, double dy,
-                                                             int has_edge) {
+                                                             bool has_edge) {
     for (int i = 0; i < n; i++) {
         to->u[i] -= values->leg[i] * dy;
         to->v[i] += values->leg[i] * dx;
@@ -59,7 +59,7 @@ static inline __attribute__((always_inline)) void add_leg_to(const struct column
 }
 
 static WIDE(void, add_leg,
-            (const struct column *to, int n, const struct unit_values *values, double dx, double dy, int has_edge),
+            (const struct column *to, int n, const struct unit_values *values, double dx, double dy, bool has_edge),
             (to, n, values, dx, dy, has_edge)) {
     add_leg_to(to, n, values, dx, dy, has_edge);
 }
@@ -357,7 +357,7 @@ static void derive_bound(const struct pass *pass, struct range points, const str
 static void derive_body(const struct pass *pass, struct range points, const struct kernel_pair *pair, double image) {
     const struct fish *const fish = &pass->flow->school->fish[pass->g];
     const struct flow_fish *const of = &pass->flow->fish[pass->g];
-    const int is_own = pass->f == pass->g && image == 0, has_legs = pass->flow->kernel->has_legs;
+    const bool is_own = pass->f == pass->g && image == 0, has_legs = pass->flow->kernel->has_legs;
     const int strength = pass->block->n_columns - 1 - fish->n_sheet, end = points.first + points.n;
     const double sign = image < 0 ? -1 : 1;
 
@@ -481,9 +481,9 @@ static void derive_nascent(const struct pass *pass, const struct sheet_points *s
     const struct fish *const fish = &flow->school->fish[pass->g];
     const struct stencil tail = {.n = 1, .node = (const int[]){fish->n_nodes - 1}, .weight = (const double[]){1}};
     const int n_released = sheet->n_released, end = points.first + points.n;
-    const int is_own = pass->f == pass->g && image == 0;
+    const bool is_own = pass->f == pass->g && image == 0;
     const double shed = flow->fish[pass->g].nascent + flow->fish[pass->g].newest;
-    const int has_legs = flow->kernel->has_legs;
+    const bool has_legs = flow->kernel->has_legs;
 
     for (int first = points.first; first < end; first += KERNEL_CHUNK) {
         const int n = end - first < KERNEL_CHUNK ? end - first : KERNEL_CHUNK;
@@ -577,9 +577,10 @@ void flow_derivative(const struct flow *flow, int f, int g, enum flow_columns co
     const struct pass pass = {flow, f, g, with_places, block};
     const struct fish *const fish = &flow->school->fish[f];
     const struct sheet *const sheet = &flow->fish[g].wake;
-    const struct flow_class *const target = &flow->class[flow->class_of[f]];
-    const struct flow_class *const source = &flow->class[flow->class_of[g]];
-    const int n_points = flow->points[f].n, is_sheet = flow_has_free_sheets(flow), has_legs = flow->kernel->has_legs;
+    const struct flow_class *const target = &flow->classes[flow->class_of[f]];
+    const struct flow_class *const source = &flow->classes[flow->class_of[g]];
+    const int n_points = flow->points[f].n;
+    const bool is_sheet = flow_has_free_sheets(flow), has_legs = flow->kernel->has_legs;
     const double depth = other->strip_depth, square = flow_square(flow, WAKE_AT_BODY, target, source);
     const struct kernel_pair exact = flow->kernel->own(depth, 0), own_wake = flow->kernel->own(depth, square);
     const struct kernel_pair wake = flow->kernel->other(depth, square);

@@ -136,7 +136,10 @@ static WIDE(void, block_edge, (struct kernel_block * at, const struct block_sour
 
 static void fill_block(struct kernel_block *block, const struct kernel_pair *pair, const struct targets *at, int first,
                        int n) {
-    if (at->edge) memset(block->edge, 0, sizeof block->edge + sizeof block->edge_gradient);
+    if (at->edge) {
+        memset(block->edge, 0, sizeof block->edge);
+        memset(block->edge_gradient, 0, sizeof block->edge_gradient);
+    }
     block->n = n;
     block->has_squares = at->square != NULL;
     for (int i = 0; i < KERNEL_BLOCK; i++) {
@@ -149,28 +152,37 @@ static void fill_block(struct kernel_block *block, const struct kernel_pair *pai
     }
 }
 
-static void add_block(const struct kernel_block *block, const struct kernel_pair *pair, const struct targets *at,
+// add a factor times n sums to an array, if there is one
+static void add_sum(int n, double factor, const double *from, double *to) {
+    for (int i = 0; i < n && to; i++) to[i] += factor * from[i];
+}
+
+static void add_block(const struct kernel_block *block, const struct kernel_pair *pair, const struct targets *all,
                       int first, int n) {
-    const struct {
-        double *to;
-        const double *from;
-        double factor;
-    } sums[] = {{at->u, block->u, 1},     {at->v, block->v, 1},         {at->u_x, block->u_x, 1},
-                {at->u_y, block->u_y, 1}, {at->v_x, block->v_x, 1},     {at->u, block->leg_u, 1},
-                {at->v, block->leg_v, 1}, {at->leg_u, block->leg_u, 1}, {at->leg_v, block->leg_v, 1},
-                {at->div, block->div, 3}, {at->div_x, block->div_x, 1}, {at->div_y, block->div_y, 1}};
-    const int n_sums = pair->kernel->has_legs ? (int)(sizeof sums / sizeof *sums) : 5;
-    for (int k = 0; k < n_sums; k++) {
-        if ((k >= 2 && k < 5 && !at->u_x) || !sums[k].to || (k >= 10 && !at->u_x)) continue;
-        for (int i = 0; i < n; i++) sums[k].to[first + i] += sums[k].factor * sums[k].from[i];
+    const struct targets at = kernel_targets_part(all, (struct range){first, n});
+    const bool has_gradient = at.u_x != NULL;
+    add_sum(n, 1, block->u, at.u);
+    add_sum(n, 1, block->v, at.v);
+    if (has_gradient) {
+        add_sum(n, 1, block->u_x, at.u_x);
+        add_sum(n, 1, block->u_y, at.u_y);
+        add_sum(n, 1, block->v_x, at.v_x);
     }
+    if (!pair->kernel->has_legs) return;
 
-    for (int k = 0; k < 2 && at->edge; k++) {
-        for (int i = 0; i < n; i++) at->edge[k * at->edge_stride + first + i] += block->edge[k][i];
+    // the loops sum a third of the divergence
+    add_sum(n, 1, block->leg_u, at.u);
+    add_sum(n, 1, block->leg_v, at.v);
+    add_sum(n, 1, block->leg_u, at.leg_u);
+    add_sum(n, 1, block->leg_v, at.leg_v);
+    add_sum(n, 3, block->div, at.div);
+    if (has_gradient) {
+        add_sum(n, 1, block->div_x, at.div_x);
+        add_sum(n, 1, block->div_y, at.div_y);
     }
-
-    for (int k = 0; k < 4 && at->edge_gradient; k++) {
-        for (int i = 0; i < n; i++) at->edge_gradient[k * at->edge_stride + first + i] += block->edge_gradient[k][i];
+    for (int k = 0; k < 2 && at.edge; k++) add_sum(n, 1, block->edge[k], at.edge + k * at.edge_stride);
+    for (int k = 0; k < 4 && at.edge_gradient; k++) {
+        add_sum(n, 1, block->edge_gradient[k], at.edge_gradient + k * at.edge_stride);
     }
 }
 
@@ -352,11 +364,20 @@ const struct kernel kernel_finite = {.has_legs = 1,
 
 void kernel_values_add(const struct kernel_pair *pair, const struct unit_values *one, double factor, int n,
                        struct unit_values *sum) {
-    // the arrays of the struct, one after the other
-    const int n_arrays = pair->kernel->has_legs ? (int)(sizeof *sum / sizeof sum->unit_u) : 6;
-    for (int k = 0; k < n_arrays; k++) {
-        const double *const from = (const double *)one + (long)k * KERNEL_CHUNK;
-        double *const to = (double *)sum + (long)k * KERNEL_CHUNK;
-        for (int i = 0; i < n; i++) to[i] += factor * from[i];
-    }
+    add_sum(n, factor, one->unit_u, sum->unit_u);
+    add_sum(n, factor, one->unit_v, sum->unit_v);
+    add_sum(n, factor, one->u_x, sum->u_x);
+    add_sum(n, factor, one->u_y, sum->u_y);
+    add_sum(n, factor, one->v_x, sum->v_x);
+    add_sum(n, factor, one->v_y, sum->v_y);
+    if (!pair->kernel->has_legs) return;
+
+    add_sum(n, factor, one->div_x, sum->div_x);
+    add_sum(n, factor, one->div_y, sum->div_y);
+    add_sum(n, factor, one->leg, sum->leg);
+    add_sum(n, factor, one->div_by_dx, sum->div_by_dx);
+    add_sum(n, factor, one->div_by_dy, sum->div_by_dy);
+    add_sum(n, factor, one->edge, sum->edge);
+    add_sum(n, factor, one->edge_x, sum->edge_x);
+    add_sum(n, factor, one->edge_y, sum->edge_y);
 }

@@ -21,6 +21,8 @@
 #ifndef KERNEL_H
 #define KERNEL_H
 
+#include <stdbool.h>
+
 #include "base/parallel.h"
 #include "wake/sources.h"
 
@@ -92,7 +94,8 @@ void kernel_values_add(const struct kernel_pair *pair, const struct unit_values 
 /* A block of targets, with sums. */
 enum { KERNEL_BLOCK = 16 };
 struct kernel_block {
-    int n, has_squares; /* targets; whether they have squares of the smoothing */
+    int n;            /* targets */
+    bool has_squares; /* whether they have squares of the smoothing */
     double x[KERNEL_BLOCK], y[KERNEL_BLOCK], half[KERNEL_BLOCK], square[KERNEL_BLOCK];
     double u[KERNEL_BLOCK], v[KERNEL_BLOCK], leg_u[KERNEL_BLOCK], leg_v[KERNEL_BLOCK], div[KERNEL_BLOCK];
     double u_x[KERNEL_BLOCK], u_y[KERNEL_BLOCK], v_x[KERNEL_BLOCK], div_x[KERNEL_BLOCK], div_y[KERNEL_BLOCK];
@@ -126,8 +129,8 @@ struct kernel_loops {
 
 /* Another kernel is another struct of this kind; no other module knows the formulas. */
 struct kernel {
-    int has_legs; /* whether legs act; without legs: no divergence, no edge force, one strength per source */
-    int cost;     /* of an interaction, in interactions of infinite span */
+    bool has_legs; /* whether legs act; without legs: no divergence, no edge force, one strength per source */
+    int cost;      /* of an interaction, in interactions of infinite span */
     /* below these numbers the direct sum is faster than the tree: measured by `make bench` */
     int tree_sources;
     int far_sources; /* below this number of sources the direct sum is faster than far points: others.h */

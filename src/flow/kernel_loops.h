@@ -148,7 +148,7 @@ static TARGET void VARIANT(mutual)(struct kernel_block *at, const struct block_m
 // the squares of all targets are no_square, or one for each target: e^2 + r_y^2 is then one sum more
 static inline __attribute__((always_inline)) TARGET void VARIANT(velocity_of_squares)(struct kernel_block *at,
                                                                                       const struct block_sources *from,
-                                                                                      int has_squares) {
+                                                                                      bool has_squares) {
     const double scale = from->span * inverse_two_pi;
     for (int i = 0; i < HALF; i += VARIANT(width)) {
         lanes x[2], y[2], square[2], u[2], v[2];

@@ -219,7 +219,7 @@ static void node_tree_enclose(struct node_tree *nodes, double least, const struc
 
     for (int b = boxes->n_boxes - 1; b >= 0; b--) {
         const struct tree_box *const of = &boxes->box[b];
-        const int is_leaf = b >= tree_boxes_level(boxes->depth);
+        const bool is_leaf = b >= tree_boxes_level(boxes->depth);
         const struct node_box *const halves = is_leaf ? NULL : &nodes->box[2 * b + 1];
         struct node_box *const box = &nodes->box[b];
         *box = (struct node_box){.n = {0}};
@@ -422,7 +422,7 @@ static WIDE(void, add_source,
 }
 
 // strengths at the nodes of a box, from the rings of a leaf or from the nodes of the halves
-static void box_gather(const struct tree *tree, int has_legs, int b) {
+static void box_gather(const struct tree *tree, bool has_legs, int b) {
     const struct node_tree *const from = &tree->from;
     const struct tree_box *const points = &from->boxes.box[b];
     const struct node_box *const box = &from->box[b];
@@ -473,7 +473,7 @@ static void grid_place(const struct chebyshev *chebyshev, const struct node_box 
 }
 
 // add the values of a grid to padded values, or set them
-static void grid_exchange(const int n[AXES], int n_values, int is_padding, double *padded, struct node_grid *grid) {
+static void grid_exchange(const int n[AXES], int n_values, bool is_padding, double *padded, struct node_grid *grid) {
     for (int value = 0; value < n_values; value++) {
         int at = 0;
         for (int h = 0; h < n[2]; h++) {
@@ -492,7 +492,7 @@ static void grid_exchange(const int n[AXES], int n_values, int is_padding, doubl
 }
 
 // velocity of the sources of a pair at its targets
-static void pair_induce(const struct tree *tree, const struct kernel_pair *with, int with_gradient,
+static void pair_induce(const struct tree *tree, const struct kernel_pair *with, bool with_gradient,
                         const struct node_pair *pair) {
     const struct node_box *const to = &tree->to.box[pair->target], *const from = &tree->from.box[pair->source];
     const struct tree_box *const to_points = &tree->to.boxes.box[pair->target];
@@ -563,7 +563,7 @@ static WIDE(double, polynomial,
 }
 
 // nodes of a box to the nodes of the halves, or to the targets of a leaf
-static void box_scatter(const struct tree *tree, int has_legs, int with_gradient, int b) {
+static void box_scatter(const struct tree *tree, bool has_legs, bool with_gradient, int b) {
     const struct node_tree *const to = &tree->to;
     const struct tree_box *const points = &to->boxes.box[b];
     const struct node_box *const box = &to->box[b];
@@ -650,7 +650,7 @@ static void targets_sort(struct tree *tree, const struct kernel_pair *pair, cons
 
 void tree_induce(struct tree *tree, const struct kernel_pair *pair, const struct sources *rings, double length,
                  double tolerance, int threads, const struct targets *at) {
-    const int has_legs = pair->kernel->has_legs, with_gradient = at->u_x != NULL;
+    const bool has_legs = pair->kernel->has_legs, with_gradient = at->u_x != NULL;
     tree->interactions = 0;
     tree->n_pairs = 0;
     if (rings->n == 0 || at->n == 0) return;

@@ -14,37 +14,37 @@ enum { LINE, VELOCITY = 2, AROUND = 4, BEFORE, N_AT_POINTS };
 
 struct pressure *pressure_create(struct arena *arena, const struct fish *fish) {
     const int n = fish->n_nodes, n_control = fish->n_control;
-    struct pressure *new;
-    NEW(arena, new, 1);
-    new->arena = arena;
-    new->fish = fish;
-    NEW(arena, new->momentum, 2 * n);
-    NEW(arena, new->momentum_rate, 2 * n);
-    NEW(arena, new->force, 2 * n);
-    struct pressure_matrix *const matrices[] = {&new->matrix, &new->rate};
+    struct pressure *created;
+    NEW(arena, created, 1);
+    created->arena = arena;
+    created->fish = fish;
+    NEW(arena, created->momentum, 2 * n);
+    NEW(arena, created->momentum_rate, 2 * n);
+    NEW(arena, created->force, 2 * n);
+    struct pressure_matrix *const matrices[] = {&created->matrix, &created->rate};
     for (int i = 0; i < 2; i++) {
         NEW(arena, matrices[i]->circulation, fish->n_sheet);
         NEW(arena, matrices[i]->value, n * n);
-        if (fish->n_sensors > 0) NEW(arena, new->sensor[i], fish->n_sensors);
+        if (fish->n_sensors > 0) NEW(arena, created->sensor[i], fish->n_sensors);
     }
-    NEW(arena, new->point, n_control);
-    NEW(arena, new->product, 2 * n);
-    NEW(arena, new->parts, 4 * n);
-    NEW(arena, new->at_points, N_AT_POINTS * n_control);
-    NEW(arena, new->spread, 2 * n_control);
+    NEW(arena, created->point, n_control);
+    NEW(arena, created->product, 2 * n);
+    NEW(arena, created->parts, 4 * n);
+    NEW(arena, created->at_points, N_AT_POINTS * n_control);
+    NEW(arena, created->spread, 2 * n_control);
 
-    NEW(arena, new->share, n_control * n);
+    NEW(arena, created->share, n_control * n);
     for (int c = 0; c < n_control; c++) {
-        for (int k = 0; k < n; k++) new->share[c * n + k] = fish->control_point[c].weight[k] / fish->mass[k];
+        for (int k = 0; k < n; k++) created->share[c * n + k] = fish->control_point[c].weight[k] / fish->mass[k];
     }
-    return new;
+    return created;
 }
 
 // R = sum over j: P_j times the circulation of vortex j; strength: the unknowns or the rates of the unknowns. R of the
 // same circulations is kept: the energy balance of a step needs R twice.
 static void pressure_find_matrix(struct pressure *p, const double *strength, struct pressure_matrix *to) {
     const struct fish *const fish = p->fish;
-    int is_new = 0;
+    bool is_new = 0;
     for (int j = 0; j < fish->n_sheet; j++) {
         const double circulation = fish->sheet_weight[j] * strength[fish->at.gamma + j];
         is_new |= !(fabs(circulation - to->circulation[j]) <= 0);
@@ -131,7 +131,7 @@ struct suction_law pressure_suction_law(double full, double bound) {
     const double ratio = most > 0 ? least / most : 0, fourth = ratio * ratio * ratio * ratio;
     const double share = 1 / sqrt(sqrt(1 + fourth)), by_least = share / (1 + fourth),
                  by_most = by_least * fourth * ratio;
-    const int is_attached = full <= bound;
+    const bool is_attached = full <= bound;
 
     return (struct suction_law){.value = least * share,
                                 .by_full = is_attached ? by_least : by_most,
@@ -169,7 +169,7 @@ double pressure_momentum_ratio(const struct fish *fish, int k) {
 }
 
 int pressure_momentum_row(const struct fish *fish, int at_start, int i, int k) {
-    const int is_given = at_start || fish_is_prescribed(fish, k, i);
+    const bool is_given = at_start || fish_is_prescribed(fish, k, i);
     return (is_given ? fish->at.px : fish->at.vx) + i * fish->n_nodes + k;
 }
 

@@ -60,21 +60,21 @@ _Thread_local const volatile sig_atomic_t *handle_stop;
 static enum status create_empty(struct arena **arena, struct shoal **run, const struct shoal *of) {
     MEMORY_BOUNDARY(STATUS_MEMORY);
     *arena = arena_create(NULL, "a run");
-    struct shoal *new;
-    NEW(*arena, new, 1);
-    new->arena = *arena;
-    new->claim.descriptor[0] = new->claim.descriptor[1] = -1;
+    struct shoal *created;
+    NEW(*arena, created, 1);
+    created->arena = *arena;
+    created->claim.descriptor[0] = created->claim.descriptor[1] = -1;
     if (of) {
-        new->shared = of->shared;
-        atomic_fetch_add(&new->shared->n_users, 1);
+        created->shared = of->shared;
+        atomic_fetch_add(&created->shared->n_users, 1);
     } else {
         struct arena *const of_case = arena_create(*arena, "the case of a run");
-        NEW(of_case, new->shared, 1);
-        atomic_init(&new->shared->n_users, 1);
-        new->shared->arena = of_case;
+        NEW(of_case, created->shared, 1);
+        atomic_init(&created->shared->n_users, 1);
+        created->shared->arena = of_case;
         arena_move(of_case, NULL);
     }
-    *run = new;
+    *run = created;
     return STATUS_OK;
 }
 

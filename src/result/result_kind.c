@@ -67,7 +67,7 @@ int result_kind_variables(int n_kinds, const struct result_kind *kinds, int as_j
     struct result_listed listed;
     int n = 0;
     for (int k = 0; k < n_kinds; k++) {
-        const int is_file = kinds[k].schema_name != NULL;
+        const bool is_file = kinds[k].schema_name != NULL;
         int n_of_kind = 0;
         for (int i = 0; kinds[k].listed(i, &listed); i++) {
             // append the words of the values

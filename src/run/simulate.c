@@ -39,18 +39,18 @@ static void simulation_set_order(struct simulation *simulation, const struct cas
 // an empty simulation of a case
 static struct simulation *simulation_begin(struct arena *parent, const struct case_values *values) {
     struct arena *const arena = arena_create(parent, "a simulation");
-    struct simulation *new;
-    NEW(arena, new, 1);
-    new->arena = arena;
-    new->started = clock_seconds(CLOCK_MONOTONIC);
-    new->n_events = lround(values->time.end / values->school.shedding_interval);
-    new->integrator = integrator_of(values->solver.method);
-    new->options = (struct integrator_options){.method = values->solver.method,
-                                               .error_test = values->solver.error_test,
-                                               .rtol = values->solver.rtol,
-                                               .step = values->solver.step,
-                                               .max_steps = values->solver.max_steps};
-    return new;
+    struct simulation *created;
+    NEW(arena, created, 1);
+    created->arena = arena;
+    created->started = clock_seconds(CLOCK_MONOTONIC);
+    created->n_events = lround(values->time.end / values->school.shedding_interval);
+    created->integrator = integrator_of(values->solver.method);
+    created->options = (struct integrator_options){.method = values->solver.method,
+                                                   .error_test = values->solver.error_test,
+                                                   .rtol = values->solver.rtol,
+                                                   .step = values->solver.step,
+                                                   .max_steps = values->solver.max_steps};
+    return created;
 }
 
 /* Create the equations and their initial conditions; stop in between when *stop is not 0. */
@@ -97,15 +97,15 @@ enum status simulate_renew(struct simulation *simulation) {
 
 enum status simulate_take_up(struct arena *parent, struct simulation **simulation, const struct case_values *values,
                              struct school *school, struct state *state, const struct integrator_counts *totals) {
-    struct simulation *const new = *simulation = simulation_begin(parent, values);
-    new->school = school;
-    new->state = state;
-    arena_move(school->arena, new->arena);
-    arena_move(state->arena, new->arena);
-    new->totals = *totals;
-    simulation_set_order(new, values);
-    new->diagnostics = diagnostics_create(new->arena, school);
-    return simulate_renew(new);
+    struct simulation *const created = *simulation = simulation_begin(parent, values);
+    created->school = school;
+    created->state = state;
+    arena_move(school->arena, created->arena);
+    arena_move(state->arena, created->arena);
+    created->totals = *totals;
+    simulation_set_order(created, values);
+    created->diagnostics = diagnostics_create(created->arena, school);
+    return simulate_renew(created);
 }
 
 void simulate_free(struct simulation *simulation) {

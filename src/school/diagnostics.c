@@ -22,8 +22,9 @@
 // ---- differences and means of samples
 
 // displacement through the water between two samples, m
-static void way_through_water(const struct sample *new, const struct sample *old, double way[2]) {
-    for (int i = 0; i < 2; i++) way[i] = new->com[i] - old->com[i] - (new->drifted[i] - old->drifted[i]);
+static void way_through_water(const struct sample *latest, const struct sample *earliest, double way[2]) {
+    for (int i = 0; i < 2; i++)
+        way[i] = latest->com[i] - earliest->com[i] - (latest->drifted[i] - earliest->drifted[i]);
 }
 
 void diagnostics_remember(struct residual *residual, struct state *state) {
@@ -78,9 +79,9 @@ void diagnostics_remember(struct residual *residual, struct state *state) {
 bool diagnostics_course(const struct history *history, double interval, double *course, double *rate, double *speed) {
     if (history->n < 2 || history->n < history->capacity) return false;
 
-    const struct sample *new = state_recall(history, 0), *old = state_recall(history, history->n - 1);
-    const double way[2] = {new->com[0] - old->com[0], new->com[1] - old->com[1]};
-    const double change[2] = {new->velocity[0] - old->velocity[0], new->velocity[1] - old->velocity[1]};
+    const struct sample *latest = state_recall(history, 0), *earliest = state_recall(history, history->n - 1);
+    const double way[2] = {latest->com[0] - earliest->com[0], latest->com[1] - earliest->com[1]};
+    const double change[2] = {latest->velocity[0] - earliest->velocity[0], latest->velocity[1] - earliest->velocity[1]};
     const double square = way[0] * way[0] + way[1] * way[1];
     *course = atan2(way[1], way[0]);
     *rate = square > 0 ? (way[0] * change[1] - way[1] * change[0]) / square : 0;
@@ -117,7 +118,7 @@ static double peak_to_peak(const struct history *history, const double way[2], d
             const double newer = tail_across(history, age - 1, way, distance);
             const double older = tail_across(history, age + 1, way, distance);
             const double slope = (newer - older) / 2, bend = newer - 2 * here + older;
-            const int is_crest = (here - newer) * (here - older) >= 0 && fabs(bend) > 0;
+            const bool is_crest = (here - newer) * (here - older) >= 0 && fabs(bend) > 0;
             if (is_crest) crest -= slope * slope / (2 * bend);
         }
 
@@ -160,7 +161,7 @@ static int bias_reversals(const struct history *history, double limit) {
 
 void diagnostics_period(const struct fish *fish, const struct history *history, double interval,
                         struct diagnostics_fish *to) {
-    const struct sample *new = state_recall(history, 0), *old = state_recall(history, history->n - 1);
+    const struct sample *latest = state_recall(history, 0), *earliest = state_recall(history, history->n - 1);
 
     // A_0: largest magnitude (NaN unless force: pressure), and fraction of the period above the limit, by trapezoids
     double most = NAN, share = 0;
@@ -176,7 +177,7 @@ void diagnostics_period(const struct fish *fish, const struct history *history, 
 
     // instantaneous values, until the second sample
     to->ground_speed = hypot(to->com_velocity[0], to->com_velocity[1]);
-    to->speed = hypot(to->com_velocity[0] - new->stream[0], to->com_velocity[1] - new->stream[1]);
+    to->speed = hypot(to->com_velocity[0] - latest->stream[0], to->com_velocity[1] - latest->stream[1]);
     to->drift = to->heading_error = to->strouhal = NAN;
     to->cost_of_transport = to->cost_of_transport_fluid = to->cost_of_transport_body = to->efficiency = NAN;
     to->towed_efficiency = NAN;
@@ -186,13 +187,13 @@ void diagnostics_period(const struct fish *fish, const struct history *history, 
     // speeds, through the water and over the ground, and powers
     const double duration = (history->n - 1) * interval;
     double way[2];
-    way_through_water(new, old, way);
+    way_through_water(latest, earliest, way);
     const double distance = hypot(way[0], way[1]);
-    to->ground_speed = hypot(new->com[0] - old->com[0], new->com[1] - old->com[1]) / duration;
+    to->ground_speed = hypot(latest->com[0] - earliest->com[0], latest->com[1] - earliest->com[1]) / duration;
     to->speed = distance / duration;
-    to->drift = (new->speed - old->speed) / new->speed;
-    to->mean_actuation_power = (new->work[WORK_ACTUATION] - old->work[WORK_ACTUATION]) / duration;
-    const double drive = (new->work[WORK_DRIVING_ON_WATER] - old->work[WORK_DRIVING_ON_WATER]) / duration;
+    to->drift = (latest->speed - earliest->speed) / latest->speed;
+    to->mean_actuation_power = (latest->work[WORK_ACTUATION] - earliest->work[WORK_ACTUATION]) / duration;
+    const double drive = (latest->work[WORK_DRIVING_ON_WATER] - earliest->work[WORK_DRIVING_ON_WATER]) / duration;
     to->mean_power = to->mean_actuation_power + drive;
 
     // Held (doc/model.md, section 13): the drive of the body also takes the thrust, whose work is no part of the power
@@ -209,10 +210,11 @@ void diagnostics_period(const struct fish *fish, const struct history *history, 
 
     // quantities along the path
     to->heading_error = angle_degrees(angle_wrap(atan2(way[1], way[0]) - angle_radians(to->desired_heading)));
-    const double momentum = fish->total_mass * to->speed, into_water = old->work[WORK_FLUID] - new->work[WORK_FLUID];
+    const double momentum = fish->total_mass * to->speed,
+                 into_water = earliest->work[WORK_FLUID] - latest->work[WORK_FLUID];
     to->cost_of_transport = (to->mean_actuation_power + drive) / momentum;
     to->cost_of_transport_fluid = into_water / duration / momentum;
-    to->cost_of_transport_body = (old->work[WORK_DAMPING] - new->work[WORK_DAMPING]) / duration / momentum;
+    to->cost_of_transport_body = (earliest->work[WORK_DAMPING] - latest->work[WORK_DAMPING]) / duration / momentum;
     to->strouhal = fish->frequency * peak_to_peak(history, way, distance) / to->speed;
     if (is_held) return;
     to->mean_thrust = -mean_against(history, offsetof(struct sample, force), way, distance);
@@ -242,7 +244,7 @@ static double swept_vortices(const struct school *school, const struct state *st
 
         for (int i = 0; i < end; i++) {
             const double p[2] = {wake->x[i], wake->y[i]};
-            const int is_close =
+            const bool is_close =
                 p[0] >= body->low[0] && p[0] <= body->high[0] && p[1] >= body->low[1] && p[1] <= body->high[1];
             n += is_close && fish_point_distance(fish, state->y, p) < 0;
         }

@@ -35,7 +35,8 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     const struct fluid_power fluid = fluid_force_power(fish, &flow, y);
     const struct pressure_forces pressure = diagnostics_pressure(residual, f, (const double[2]){0, 0}, y);
-    const struct actuation muscle = residual_muscle(residual, f, t, y);
+    residual_actuate(residual, f, t, y);
+    const struct actuation muscle = residual_muscle(residual, f);
     const struct rod_strains strains = find_strains(residual, f, &muscle, y);
 
     // internal powers
@@ -86,7 +87,8 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
 
 struct diagnostics_energies diagnostics_energies(struct residual *residual, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
-    const struct actuation muscle = residual_muscle(residual, f, t, y);
+    residual_actuate(residual, f, t, y);
+    const struct actuation muscle = residual_muscle(residual, f);
     const struct rod_strains strains = find_strains(residual, f, &muscle, y);
     const struct rod_energetics body = rod_energetics(fish, &muscle, &strains);
     double kinetic = 0;
@@ -127,7 +129,8 @@ static void add_works(struct residual *residual, struct state *state, int f, dou
     if (fish->damping != DAMPING_CURVATURE && h > 0) {
         double *const scratch = residual->scratch, *const stress = scratch + fish->at.vx;
         const struct rod_strains by_places = {scratch + fish->at.x, scratch + fish->at.ax, stress};
-        const struct actuation muscle = residual_muscle(residual, f, t, y);
+        residual_actuate(residual, f, t, y);
+        const struct actuation muscle = residual_muscle(residual, f);
         rod_strains(fish, &muscle, y, &by_places);
         residual_balance(residual, f, y, scratch);
         rod_stress_balance(fish, scratch, y, stress);
@@ -150,7 +153,7 @@ static void add_works(struct residual *residual, struct state *state, int f, dou
         balance->power[0][i] = power[0];
     }
 
-    const int has_area = t > times[1];
+    const bool has_area = t > times[1];
     diagnostics_momentum_step(residual, state, f, t, y, has_area ? balance->n + 1 : 0, times);
     for (int i = 0; i < 2; i++) balance->t[i] = times[i];
     if (balance->n < 2) balance->n++;
@@ -195,7 +198,8 @@ void diagnostics_after_jump(struct residual *residual, struct state *state) {
         // strains and stresses of a consistent state: initial values of add_works
         const struct fish *fish = &residual->school->fish[f];
         struct energy_balance *const balance = &state->balance[f];
-        const struct actuation muscle = residual_muscle(residual, f, state->t, state->y);
+        residual_actuate(residual, f, state->t, state->y);
+        const struct actuation muscle = residual_muscle(residual, f);
         const struct rod_strains strains = {balance->strain, residual->scratch + fish->at.vx, balance->stress};
         rod_strains(fish, &muscle, state->y, &strains);
 

@@ -27,7 +27,7 @@ struct jacobian {
     unsigned pattern; /* couplings.pattern of the residual at jacobian_couple */
     int *first;       /* (n_fish + 1) */
     int n_couplings;
-    int has_contacts;                   /* whether the couplings contain contact forces */
+    bool has_contacts;                  /* whether the couplings contain contact forces */
     struct jacobian_coupling *coupling; /* (n_couplings) */
     double *values;                     /* of all couplings */
 };

@@ -149,20 +149,20 @@ int residual_couple_more(struct residual_couplings *couplings, const double *y) 
 }
 
 struct residual *residual_create(struct arena *arena, const struct school *school, const struct state *state) {
-    struct residual *new;
-    NEW(arena, new, 1);
-    new->school = school;
-    new->state = state;
-    NEW(arena, new->joints, school->n_fish);
-    NEW(arena, new->pressure, school->n_fish);
-    NEW(arena, new->scratch, school->n_unknowns);
+    struct residual *created;
+    NEW(arena, created, 1);
+    created->school = school;
+    created->state = state;
+    NEW(arena, created->joints, school->n_fish);
+    NEW(arena, created->pressure, school->n_fish);
+    NEW(arena, created->scratch, school->n_unknowns);
 
     // find the sizes of all fish
     int n_joints = 0, most_points = 0, most_columns = 0, most_rows = 0, has_edges = 0;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
-        if (fish_has_momentum(fish)) new->pressure[f] = pressure_create(arena, fish);
-        new->joints[f] = (struct range){n_joints, fish->n_joints};
+        if (fish_has_momentum(fish)) created->pressure[f] = pressure_create(arena, fish);
+        created->joints[f] = (struct range){n_joints, fish->n_joints};
         n_joints += fish->n_joints;
         const int points = flow_n_points(fish), columns = flow_n_columns(fish), rows = flow_n_rows(fish);
         if (points > most_points) most_points = points;
@@ -172,32 +172,33 @@ struct residual *residual_create(struct arena *arena, const struct school *schoo
     }
 
     // the actuation of all joints
-    NEW(arena, new->muscle.curvature, n_joints);
-    NEW(arena, new->muscle.rate, n_joints);
-    NEW(arena, new->muscle.curvature_by_phi0, n_joints);
-    NEW(arena, new->muscle.rate_by_phi0, n_joints);
+    NEW(arena, created->muscle.curvature, n_joints);
+    NEW(arena, created->muscle.rate, n_joints);
+    NEW(arena, created->muscle.curvature_by_phi0, n_joints);
+    NEW(arena, created->muscle.rate_by_phi0, n_joints);
 
-    new->flow = flow_create(arena, school);
+    created->flow = flow_create(arena, school);
 
     // for every thread a block that fits any pair of fish
-    NEW(arena, new->jacobian_scratch, school->threads);
+    NEW(arena, created->jacobian_scratch, school->threads);
     for (int i = 0; i < school->threads; i++) {
-        struct jacobian_scratch *const scratch = &new->jacobian_scratch[i];
+        struct jacobian_scratch *const scratch = &created->jacobian_scratch[i];
         NEW(arena, scratch->block.u, most_points * most_columns);
         NEW(arena, scratch->block.v, most_points * most_columns);
-        if (new->flow->kernel->has_legs) NEW(arena, scratch->block.div, most_points * most_columns);
-        if (new->flow->kernel->has_legs && has_edges) NEW(arena, scratch->block.edge, 2 * most_points * most_columns);
+        if (created->flow->kernel->has_legs) NEW(arena, scratch->block.div, most_points * most_columns);
+        if (created->flow->kernel->has_legs && has_edges)
+            NEW(arena, scratch->block.edge, 2 * most_points * most_columns);
         NEW(arena, scratch->rows.value, most_rows * most_columns);
     }
 
     // the partners of each fish: by contact, and by couplings in the Jacobian
-    new->neighbours = neighbours_create(arena, school->n_fish);
-    new->couplings = (struct residual_couplings){
-        .school = school, .neighbours = new->neighbours, .reach = school->coupling_distance};
-    NEW(arena, new->couplings.coupled, (size_t)school->n_fish * (size_t)school->n_fish);
-    new->contact = contact_create(arena, school);
-    residual_couple(&new->couplings, state->y);
-    return new;
+    created->neighbours = neighbours_create(arena, school->n_fish);
+    created->couplings = (struct residual_couplings){
+        .school = school, .neighbours = created->neighbours, .reach = school->coupling_distance};
+    NEW(arena, created->couplings.coupled, (size_t)school->n_fish * (size_t)school->n_fish);
+    created->contact = contact_create(arena, school);
+    residual_couple(&created->couplings, state->y);
+    return created;
 }
 
 static enum bound_sheet_law sheet_law(const struct school *school, const struct residual_mode *mode) {
@@ -234,13 +235,16 @@ double residual_lost(const struct residual *residual, int f, double t) {
     return school->removed == REMOVED_DROPPED ? wake_lost(&state->wake[f], school, state->t, t - state->t) : 0;
 }
 
-struct actuation residual_muscle(struct residual *residual, int f, double t, const double *y) {
+struct actuation residual_muscle(const struct residual *residual, int f) {
+    return actuation_from(&residual->muscle, residual->joints[f].first);
+}
+
+void residual_actuate(struct residual *residual, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
     const struct state *const state = residual->state;
-    const struct actuation muscle = actuation_from(&residual->muscle, residual->joints[f].first);
+    const struct actuation muscle = residual_muscle(residual, f);
     const double phi0_rate = control_rate(fish, &state->control[f], t, t - state->t, y);
     actuation_find(fish, control_gait(fish, &state->control[f], t), y[fish->at.phi0], phi0_rate, &muscle);
-    return muscle;
 }
 
 void residual_forces(const struct residual *residual, int f, const double *y, double *value) {
@@ -263,7 +267,7 @@ static void residual_of_body(const struct residual *residual, int f, const doubl
         value[fish->at.ax + k] = fish->mass[k] * y[fish->at.ax + k];
         value[fish->at.ay + k] = fish->mass[k] * y[fish->at.ay + k];
     }
-    const struct actuation muscle = actuation_from(&residual->muscle, residual->joints[f].first);
+    const struct actuation muscle = residual_muscle(residual, f);
     rod_residual(fish, &muscle, y, value);
     rod_clamp_residual(fish, residual->flow->t, y, value);
 }
@@ -282,17 +286,21 @@ static void evaluate_fish(struct residual *residual, const struct residual_mode 
     const double *const u = residual->flow->u + residual->flow->points[f].first;
     const double *const v = residual->flow->v + residual->flow->points[f].first;
 
-    // dx/dt = v and dv/dt = a; with momenta dp/dt = a
-    const int second = fish_has_momentum(fish) ? fish->at.px : fish->at.vx;
+    // dx/dt = v and dv/dt = a. With momenta dp/dt = a, and v follows from p by the rows of the pressure; velocities
+    // that are given have no equation, and p follows from them
     for (int i = 0; i < 2 * fish->n_nodes; i++) {
         value[fish->at.x + i] = yp[fish->at.x + i] - y[fish->at.vx + i];
-        // given velocities have no equation; without momenta the next line overwrites this row
-        value[fish->at.vx + i] = 0;
-        value[second + i] = yp[second + i] - y[fish->at.ax + i];
+        if (!fish_has_momentum(fish)) {
+            value[fish->at.vx + i] = yp[fish->at.vx + i] - y[fish->at.ax + i];
+        } else if (mode->velocities_are_given) {
+            value[fish->at.vx + i] = 0;
+        } else {
+            value[fish->at.px + i] = yp[fish->at.px + i] - y[fish->at.ax + i];
+        }
     }
 
     // equation of motion, divided by the node masses
-    residual_muscle(residual, f, t, y);
+    residual_actuate(residual, f, t, y);
     residual_of_body(residual, f, y, value);
     if (mode->forces) {
         const struct flow_at_body flow = flow_at_body(residual->flow, f);

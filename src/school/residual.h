@@ -118,8 +118,9 @@ struct residual *residual_create(struct arena *arena, const struct school *schoo
 enum status residual_evaluate(struct residual *residual, const struct residual_mode *mode, double t, const double *y,
                               const double *yp, double *value);
 
-/* Evaluate and return the actuation of the joints of fish f for the phi0 in y. */
-struct actuation residual_muscle(struct residual *residual, int f, double t, const double *y);
+/* Evaluate the actuation of the joints of fish f for the phi0 in y; and the actuation of the last evaluation. */
+void residual_actuate(struct residual *residual, int f, double t, const double *y);
+struct actuation residual_muscle(const struct residual *residual, int f);
 
 /* The rows ax, ay of fish f in N, without prescribed motion: m a minus all forces. Uses flow velocity, natural
  * curvature and contacts of the last evaluation. */

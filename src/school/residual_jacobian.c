@@ -46,9 +46,9 @@ static void add_own_rows(const struct residual *residual, const struct residual_
     for (int c = 0; c < rows->n_columns; c++) {
         const double *const value = rows->value + (long)c * rows->n_rows;
         const int column = flow_column(fish, c), node = c % n_nodes;
-        const int is_place = c < n_places, is_shed = c == rows->n_columns - 1;
+        const bool is_place = c < n_places, is_shed = c == rows->n_columns - 1;
 
-        const int is_nascent = fish_feels_own_wake(fish) && (is_shed || (is_place && node == n_nodes - 1));
+        const bool is_nascent = fish_feels_own_wake(fish) && (is_shed || (is_place && node == n_nodes - 1));
         const int all = is_nascent || fish_has_momentum(fish) || residual->school->walls.n > 0;
         const int first = all || node == 0 ? 0 : node - 1, last = all || node >= felt_at_tail ? n_nodes - 1 : node + 1;
 
@@ -86,7 +86,8 @@ static void fish_jacobian(struct residual *residual, const struct residual_mode 
         }
         sparse_add(own, fish->at.ax + i, fish->at.ax + i, 1);
     }
-    const struct actuation muscle = residual_muscle(residual, f, t, y);
+    residual_actuate(residual, f, t, y);
+    const struct actuation muscle = residual_muscle(residual, f);
     rod_jacobian(fish, &muscle, y, own);
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     rod_clamp_jacobian(fish, t, y, own);

@@ -287,7 +287,7 @@ enum status ode_rhs_rates(struct ode_rhs *d, double t, double *y, double *yp) {
         control_residual(fish, &state->control[f], t, t - state->t, y, d->residual->scratch);
         y[at->phi0] = -d->residual->scratch[at->phi0];
 
-        residual_muscle(d->residual, f, t, y);
+        residual_actuate(d->residual, f, t, y);
         TRY(find_accelerations(d, f, t, y));
         memcpy(yp + at->x, y + at->vx, size);
         memcpy(yp + (fish_has_momentum(fish) ? at->px : at->vx), y + at->ax, size);

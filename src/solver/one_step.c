@@ -301,7 +301,7 @@ static enum status verlet_advance(void *data, double t, const volatile sig_atomi
         for (int f = 0; f < school->n_fish; f++) {
             const struct fish *const fish = &school->fish[f];
             const struct layout *const at = &fish->at;
-            residual_muscle(residual, f, now, y);
+            residual_actuate(residual, f, now, y);
             memset(y + at->ax, 0, 2 * (size_t)fish->n_nodes * sizeof *y);
             residual_balance(residual, f, y, value);
             for (int k = 0; k < 2 * fish->n_nodes; k++) {

@@ -92,17 +92,18 @@ enum status steady_map_beat(struct steady_map *map, enum status (*row)(void *dat
     // means from the history; works give the mean powers, because works include the steps between events
     for (int f = 0; f < map->simulation->school->n_fish; f++) {
         const struct history *const history = &map->simulation->state->history[f];
-        const struct sample *const new = state_recall(history, 0), *const old = state_recall(history, history->n - 1);
+        const struct sample *const created = state_recall(history, 0), *const old =
+                                                                           state_recall(history, history->n - 1);
         struct steady_beat *const beat = &map->last[f];
         beat->speed = map->simulation->diagnostics->fish[f].speed;
-        beat->turn = new->heading - old->heading;
+        beat->turn = created->heading - old->heading;
         const struct steady_unknown place[] = {{f, STEADY_AHEAD}, {f, STEADY_ASIDE}};
         steady_map_read(map, 2, place, beat->place);
 
-        beat->actuation = (new->work[WORK_ACTUATION] - old->work[WORK_ACTUATION]) / map->period;
-        beat->damping = (new->work[WORK_DAMPING] - old->work[WORK_DAMPING]) / map->period;
-        beat->driving = (new->work[WORK_DRIVING] - old->work[WORK_DRIVING]) / map->period;
-        beat->fluid = (old->work[WORK_FLUID] - new->work[WORK_FLUID]) / map->period;
+        beat->actuation = (created->work[WORK_ACTUATION] - old->work[WORK_ACTUATION]) / map->period;
+        beat->damping = (created->work[WORK_DAMPING] - old->work[WORK_DAMPING]) / map->period;
+        beat->driving = (created->work[WORK_DRIVING] - old->work[WORK_DRIVING]) / map->period;
+        beat->fluid = (old->work[WORK_FLUID] - created->work[WORK_FLUID]) / map->period;
         beat->rms_thrust = sqrt(beat->rms_thrust);
         beat->rms_power = sqrt(beat->rms_power);
     }

@@ -132,10 +132,11 @@ void field_file_box(const struct field_row *row, double low[2], double high[2]) 
 static void grid_define_all(struct netcdf_writer *writer, const struct field *field, const char *run) {
     int number[N_AXES];
     // walls come last
-    const int has_walls = field->length[WALL_AXIS] > 0, n_axes = has_walls ? N_AXES : WALL_AXIS;
+    const bool has_walls = field->length[WALL_AXIS] > 0;
+    const int n_axes = has_walls ? N_AXES : WALL_AXIS;
     for (int a = TIME_AXIS; a < n_axes; a++)
         number[a] = netcdf_define_dimension(writer, axis_name[a], field->length[a]);
-    const int is_single = field->row->values.output.precision == PRECISION_SINGLE;
+    const bool is_single = field->row->values.output.precision == PRECISION_SINGLE;
 
     for (int i = 0; i < (has_walls ? N_VARIABLES : WALL_Y); i++) {
         const struct variable *const variable = &variables[i];

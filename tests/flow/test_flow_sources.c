@@ -591,7 +591,7 @@ TEST(sums_by_the_tree_have_equal_parts_of_half_the_tolerance) {
     pair.span = 1;
 
     const struct fish *const fish = &setup.school->fish[0];
-    const struct range points = flow->class[0].points;
+    const struct range points = flow->classes[0].points;
     AT_MOST(points.n, MOST);
     int n_other = 0;
     for (double tolerance = 1e-3; tolerance > 1e-6; tolerance /= 2) {
