@@ -130,13 +130,17 @@ static void ida_trace_result(struct ida *solver, bool is_accepted) {
     solver->is_pending = false;
 }
 
-// keep an attempt; another attempt before it means that IDA has rejected that one
-static void keep_attempt(void *data, int code, const struct trace_attempt *attempt) {
+// only while a trace is open; another attempt before this one means that IDA has rejected that one
+static struct trace_attempt *next_attempt(void *data) {
     struct ida *const solver = data;
-    if (!solver->trace) return;
+    if (!solver->trace) return NULL;
     ida_trace_result(solver, false);
+    return &solver->attempt;
+}
+
+static void keep_attempt(void *data, int code) {
+    struct ida *const solver = data;
     const long gmres = linear_count(solver->linear.linear).iterations;
-    solver->attempt = *attempt;
     solver->attempt.event = solver->state->event + 1;
     solver->attempt.cj_ratio = leading_coefficient(solver) / solver->jacobian_cj;
     solver->attempt.gmres = gmres - solver->gmres;
@@ -207,6 +211,7 @@ static enum status ida_create(struct arena *arena, void **created, struct residu
                                            .leading_coefficient = leading_coefficient,
                                            .update = is_sheet ? update_jacobian : NULL,
                                            .complete = couple_more,
+                                           .attempt = next_attempt,
                                            .attempted = keep_attempt};
     solver->newton = ida_newton_create(&solver->context, school, rules);
 

@@ -33,8 +33,8 @@ struct ida_newton {
 
     /* since the evaluation of the Jacobian: solutions, their iterations, iterations of the last solution */
     int n_solutions, n_iterations, n_last;
-    bool is_incomplete;           /* a new Jacobian would be more complete */
-    struct trace_attempt attempt; /* corrections of this solution, for rules.attempted */
+    bool is_incomplete;            /* a new Jacobian would be more complete */
+    struct trace_attempt *attempt; /* corrections of this solution; NULL: not recorded */
 };
 
 // judge a correction by one norm: converged, continue, or failed
@@ -57,7 +57,7 @@ static int newton_test(struct ida_newton *newton, int norm, double size, double 
 // keep a correction for the trace: its norms, and the unknown with the largest correction
 static void newton_record(struct ida_newton *newton, double all, double differential, const double *correction,
                           const double *weight) {
-    struct trace_attempt *const attempt = &newton->attempt;
+    struct trace_attempt *const attempt = newton->attempt;
     const int n = (int)N_VGetLength(newton->correction), i = attempt->n_corrections++;
     attempt->worst = -1;
     for (int k = 0; k < n; k++) {
@@ -98,7 +98,7 @@ static int newton_iterate(struct ida_newton *newton, N_Vector total, N_Vector we
             differential += kind && kind[i] > 0 ? square : 0;
         }
 
-        if (newton->rules.attempted) {
+        if (newton->attempt) {
             newton_record(newton, sqrt(all / (double)n), kind ? sqrt(differential / (double)n) : NAN, correction,
                           weight);
         }
@@ -175,7 +175,7 @@ static int newton_solve_step(SUNNonlinearSolver solver, N_Vector predicted, N_Ve
             if (code != 0) return code;
             corotation_set_reference(newton->corotation, N_VGetArrayPointer(predicted));
             newton->n_solutions = newton->n_iterations = 0;
-            if (newton->attempt.n_corrections == 0) newton->attempt.age = 0;
+            if (newton->attempt && newton->attempt->n_corrections == 0) newton->attempt->age = 0;
         } else if (rules->update) {
             rules->update(rules->data);
         }
@@ -206,11 +206,11 @@ static int newton_solve_step(SUNNonlinearSolver solver, N_Vector predicted, N_Ve
 static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector total, N_Vector weights,
                         sunrealtype tolerance, sunbooleantype evaluate, void *ida) {
     struct ida_newton *const newton = solver->content;
-    newton->attempt.n_corrections = 0;
-    newton->attempt.worst = -1;
-    newton->attempt.age = newton->n_solutions;
+    const struct ida_newton_rules *const rules = &newton->rules;
+    newton->attempt = rules->attempt ? rules->attempt(rules->data) : NULL;
+    if (newton->attempt) *newton->attempt = (struct trace_attempt){.worst = -1, .age = newton->n_solutions};
     const int code = newton_solve_step(solver, predicted, total, weights, tolerance, evaluate, ida);
-    if (newton->rules.attempted) newton->rules.attempted(newton->rules.data, code, &newton->attempt);
+    if (newton->attempt) rules->attempted(rules->data, code);
     return code;
 }
 

@@ -26,8 +26,10 @@ struct ida_newton_rules {
     /* complete the Jacobian if a new Jacobian needs more than max_iterations; returns whether the next evaluation is
      * more complete. NULL: the Jacobian is complete */
     int (*complete)(void *data);
-    /* called at the end of each solution with the result and the corrections; NULL: nobody wants to know */
-    void (*attempted)(void *data, int code, const struct trace_attempt *attempt);
+    /* called at the start of each solution: where to record its corrections, or NULL: nobody wants to know them; then
+     * at the end of a recorded solution with its result. Both NULL: no solution is recorded */
+    struct trace_attempt *(*attempt)(void *data);
+    void (*attempted)(void *data, int code);
 };
 
 /* Create a solver for IDASetNonlinearSolver. The arena of the context owns the solver; the school must outlive it. */

@@ -23,6 +23,9 @@ struct problem {
     int is_periodic, n_residuals, n_set_ups, n_bad, n_updates, never_finite;
     double updated;  /* how wrong the Jacobian is after an update; 0: there are none */
     long iterations; /* of the last solution */
+    /* the record of a solution, while one is wanted, and the results of recorded solutions */
+    int is_traced, n_recorded, last_code;
+    struct trace_attempt attempt;
 };
 
 // of all unknowns but the first; the last one is predicted as 0
@@ -75,6 +78,17 @@ static void update(void *data) {
     problem->wrong = problem->updated;
 }
 
+static struct trace_attempt *attempt_of(void *data) {
+    struct problem *const problem = data;
+    return problem->is_traced ? &problem->attempt : NULL;
+}
+
+static void attempted(void *data, int code) {
+    struct problem *const problem = data;
+    problem->n_recorded++;
+    problem->last_code = code;
+}
+
 static struct problem *pose(double updated, int is_periodic) {
     struct problem *problem;
     NEW(test_arena(), problem, 1);
@@ -100,7 +114,9 @@ static struct problem *pose(double updated, int is_periodic) {
                                            .is_periodic = problem->is_periodic,
                                            .data = problem,
                                            .leading_coefficient = coefficient,
-                                           .update = problem->updated > 0 ? update : NULL};
+                                           .update = problem->updated > 0 ? update : NULL,
+                                           .attempt = attempt_of,
+                                           .attempted = attempted};
     problem->solver = ida_newton_create(&problem->context, problem->setup.school, rules);
     assert_int_equal(SUNNonlinSolGetType(problem->solver), SUNNONLINEARSOLVER_ROOTFIND);
     assert_int_equal(SUNNonlinSolSetSysFn(problem->solver, residual), 0);
@@ -307,4 +323,41 @@ TEST(a_jacobian_that_has_become_expensive_is_evaluated_again) {
     AT_LEAST(before * served, spent + 5);
     BELOW(before * (served - 1), spent - before + 5 + served);
     ABOVE(served, 2);
+}
+
+TEST(corrections_are_recorded_only_while_they_are_wanted) {
+    struct problem *const problem = pose(0, 0);
+    problem->attempt.n_corrections = -1;
+    assert_int_equal(solve(problem, 1e-6, 1), 0);
+    assert_int_equal(problem->n_recorded, 0);
+    assert_int_equal(problem->attempt.n_corrections, -1);
+
+    // an old Jacobian that leaves a tenth of the error: of 1, 0.1, 0.01 in each unknown
+    problem->is_traced = 1;
+    solve_again(problem, 0.1, 4e-3);
+    const struct trace_attempt *const attempt = &problem->attempt;
+    assert_int_equal(problem->n_recorded, 1);
+    assert_int_equal(problem->last_code, 0);
+    assert_int_equal(attempt->n_corrections, problem->iterations);
+    assert_int_equal(attempt->age, 1);
+    for (int i = 0; i < attempt->n_corrections; i++) {
+        NEAR(attempt->correction[i].norm, 1.8 * pow(0.1, i), 0, 1e-9);
+        assert_int_equal(attempt->correction[i].is_first, i == 0);
+        if (i > 0) NEAR(attempt->correction[i].rate, 0.1, 0, 1e-9);
+    }
+
+    // one that fails is replaced within the same record
+    problem->root = 3;
+    problem->coefficient *= 2;
+    problem->wrong = 0.95;
+    assert_int_equal(solve(problem, 1e-6, 0), 0);
+    assert_int_equal(problem->n_recorded, 2);
+    assert_int_equal(attempt->n_corrections, 5);
+    assert_true(attempt->correction[3].is_first);
+
+    problem->is_traced = 0;
+    problem->coefficient *= 2;
+    assert_int_equal(solve(problem, 1e-6, 0), 0);
+    assert_int_equal(problem->n_recorded, 2);
+    assert_int_equal(attempt->n_corrections, 5);
 }
