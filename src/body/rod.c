@@ -2,6 +2,7 @@
 #include "body/rod.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "fish/fish_motion.h"
 
@@ -193,6 +194,21 @@ void rod_jacobian(const struct fish *fish, const struct actuation *muscle, const
                 sparse_add(jacobian, row, (b == 0 ? fish->at.x : fish->at.y) + k + m / 2, sign * by_place);
                 sparse_add(jacobian, row, (b == 0 ? fish->at.vx : fish->at.vy) + k + m / 2, sign * by_velocity);
             }
+        }
+    }
+}
+
+// the natural angle moves with amplitude times phi0, its rate with amplitude times the rate of phi0: the derivatives of
+// curvature and of rate are the same
+void rod_by_phi0_rate(const struct fish *fish, const struct actuation *muscle, const double *y, double *value) {
+    memset(value, 0, 2 * (size_t)fish->n_nodes * sizeof *value);
+    if (fish->damping != DAMPING_STRAIN) return;
+    for (int j = 0; j < fish->n_joints; j++) {
+        const struct joint joint = joint_at(fish, muscle, j, y);
+        const double moment = fish->bending_damping[j] * muscle->curvature_by_phi0[j] * joint.bend.slope;
+        for (int i = 0; i < N_LOCAL; i++) {
+            const int node = j + i / 2;
+            value[i % 2 * fish->n_nodes + node] -= moment * joint.gradient[i] / fish->mass[node];
         }
     }
 }

@@ -84,6 +84,10 @@ void rod_residual(const struct fish *fish, const struct actuation *muscle, const
 /* Add the derivatives of rod_residual, each row divided by the node mass, at a constant rate of phi0. */
 void rod_jacobian(const struct fish *fish, const struct actuation *muscle, const double *y, struct sparse *jacobian);
 
+/* Derivatives of rod_residual by the rate of phi0, each row divided by the node mass: rows ax, then ay (2 n_nodes).
+ * Zeros with damping of the curvature, which does not contain the rate. */
+void rod_by_phi0_rate(const struct fish *fish, const struct actuation *muscle, const double *y, double *value);
+
 /* Strains, damped rates and stresses: all joints, then all edges; all arrays (rod_n_strains). */
 struct rod_strains {
     double *strain; /* kappa - kbar, 1; l/lbar - 1 */

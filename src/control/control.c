@@ -200,33 +200,106 @@ static double turn_rate(const double vector[2], const double rate[2]) {
     return (vector[0] * rate[1] - vector[1] * rate[0]) / (vector[0] * vector[0] + vector[1] * vector[1]);
 }
 
-double control_rate(const struct fish *fish, const struct control_memory *memory, double t, double since,
-                    const double *y) {
-    if (fish->control.law == CONTROL_NONE) return lead_rate(&memory->bias, t);
-    if (fish->control.law != CONTROL_HEADING) return memory->phi0_rate;
+// derivatives of the direction of a vector, and of turn_rate by the rate
+static void direction_by_vector(const double vector[2], double by[2]) {
+    const double square = vector[0] * vector[0] + vector[1] * vector[1];
+    by[0] = -vector[1] / square;
+    by[1] = vector[0] / square;
+}
 
-    double head[2], rate[2];
-    head_vector(fish, y, head);
-    rate[0] = y[fish->at.vx] - fish_mean(&fish->heading_point, y + fish->at.vx);
-    rate[1] = y[fish->at.vy] - fish_mean(&fish->heading_point, y + fish->at.vy);
+// derivatives of turn_rate by the vector
+static void turn_rate_by_vector(const double vector[2], const double rate[2], double by[2]) {
+    const double square = vector[0] * vector[0] + vector[1] * vector[1], turning = turn_rate(vector, rate);
+    by[0] = (rate[1] - 2 * vector[0] * turning) / square;
+    by[1] = (-rate[0] - 2 * vector[1] * turning) / square;
+}
+
+/* Law heading between two events: the vectors whose directions it compares, their rates, the slope of the law, and the
+ * rate of its argument. */
+struct steering {
+    bool to_waypoint;
+    double head[2], head_rate[2];
+    double away[2], away_rate[2]; /* from the nose to the waypoint, if any */
+    double tangent, slope;        /* tanh of the argument; derivative of phi0 by the argument */
+    double argument_rate;         /* s-1 */
+};
+
+static struct steering steering_at(const struct fish *fish, const struct control_memory *memory, double t, double since,
+                                   const double *y) {
+    struct steering of = {.to_waypoint = steers_to_waypoint(fish, memory)};
+    head_vector(fish, y, of.head);
+    of.head_rate[0] = y[fish->at.vx] - fish_mean(&fish->heading_point, y + fish->at.vx);
+    of.head_rate[1] = y[fish->at.vy] - fish_mean(&fish->heading_point, y + fish->at.vy);
 
     // rate of the desired heading
     double desired = 0;
-    if (steers_to_waypoint(fish, memory)) {
-        double away[2];
-        waypoint_vector(fish, memory, y, away);
-        desired = turn_rate(away, (const double[]){-y[fish->at.vx], -y[fish->at.vy]});
+    if (of.to_waypoint) {
+        waypoint_vector(fish, memory, y, of.away);
+        of.away_rate[0] = -y[fish->at.vx];
+        of.away_rate[1] = -y[fish->at.vy];
+        desired = turn_rate(of.away, of.away_rate);
     } else if (control_n_waypoints(fish, memory) == 0 && memory->has_heading) {
         desired = lead_rate(&memory->heading, t);
     } else if (control_n_waypoints(fish, memory) == 0) {
         table_heading(&fish->control, t, &desired);
     }
 
-    const double error_rate = turn_rate(head, rate) - desired;
-    const double tangent = tanh(heading_argument(fish, memory, t, since, y));
+    const double error_rate = turn_rate(of.head, of.head_rate) - desired;
+    of.tangent = tanh(heading_argument(fish, memory, t, since, y));
+    of.slope = fish->control.limit * (1 - of.tangent * of.tangent);
+    of.argument_rate = fish->control.feedforward * memory->moment_rate + fish->control.gain * error_rate;
+    return of;
+}
 
-    return fish->control.limit * (1 - tangent * tangent) *
-           (fish->control.feedforward * memory->moment_rate + fish->control.gain * error_rate);
+double control_rate(const struct fish *fish, const struct control_memory *memory, double t, double since,
+                    const double *y) {
+    if (fish->control.law == CONTROL_NONE) return lead_rate(&memory->bias, t);
+    if (fish->control.law != CONTROL_HEADING) return memory->phi0_rate;
+    const struct steering of = steering_at(fish, memory, t, since, y);
+    return of.slope * of.argument_rate;
+}
+
+bool control_rate_varies(const struct fish *fish) {
+    return fish->control.law == CONTROL_HEADING;
+}
+
+void control_rate_jacobian(const struct fish *fish, const struct control_memory *memory, double t, double since,
+                           const double *y, int first_row, int n_rows, const double *factor, struct sparse *jacobian) {
+    const struct steering of = steering_at(fish, memory, t, since, y);
+    const double gain = of.slope * fish->control.gain;
+
+    // by the head vector and by its rate; the slope is limit (1 - tanh^2)
+    double by_head[2], by_head_rate[2];
+    turn_rate_by_vector(of.head, of.head_rate, by_head);
+    direction_by_vector(of.head, by_head_rate);
+    // the direction to the waypoint is subtracted, and the vector to it shrinks as the nose moves; without a waypoint
+    // the nose has no such part
+    double by_nose[2] = {0, 0}, by_nose_rate[2] = {0, 0};
+    if (of.to_waypoint) {
+        turn_rate_by_vector(of.away, of.away_rate, by_nose);
+        direction_by_vector(of.away, by_nose_rate);
+    }
+    const double bend = 2 * of.tangent * of.argument_rate;
+    for (int d = 0; d < 2; d++) {
+        by_head[d] -= bend * by_head_rate[d];
+        by_nose[d] -= bend * by_nose_rate[d];
+    }
+
+    // the nose, then the nodes of the point at a third of the length
+    for (int i = -1; i < fish->heading_point.n; i++) {
+        const int node = i < 0 ? 0 : fish->heading_point.node[i];
+        const double weight = i < 0 ? 1 : -fish->heading_point.weight[i];
+        for (int d = 0; d < 2; d++) {
+            const double by_place = gain * (weight * by_head[d] + (i < 0 ? by_nose[d] : 0));
+            const double by_velocity = gain * (weight * by_head_rate[d] + (i < 0 ? by_nose_rate[d] : 0));
+            const int place = (d == 0 ? fish->at.x : fish->at.y) + node;
+            const int velocity = (d == 0 ? fish->at.vx : fish->at.vy) + node;
+            for (int k = 0; k < n_rows; k++) {
+                sparse_add(jacobian, first_row + k, place, factor[k] * by_place);
+                sparse_add(jacobian, first_row + k, velocity, factor[k] * by_velocity);
+            }
+        }
+    }
 }
 
 void control_jacobian(const struct fish *fish, const struct control_memory *memory, double t, double since,
@@ -234,14 +307,11 @@ void control_jacobian(const struct fish *fish, const struct control_memory *memo
     const int row = fish->at.phi0;
     sparse_add(jacobian, row, fish->at.phi0, 1);
     if (fish->control.law != CONTROL_HEADING) return;
-    const double tangent = tanh(heading_argument(fish, memory, t, since, y));
-    const double slope = fish->control.limit * (1 - tangent * tangent);
+    const struct steering of = steering_at(fish, memory, t, since, y);
+    const double gain = of.slope * fish->control.gain;
 
-    // the heading turns with the head vector (hx, hy): dh = (hx dhy - hy dhx)/|h|^2
-    double head[2];
-    head_vector(fish, y, head);
-    const double square = head[0] * head[0] + head[1] * head[1], gain = slope * fish->control.gain;
-    const double by_head[2] = {-head[1] / square, head[0] / square};
+    double by_head[2];
+    direction_by_vector(of.head, by_head);
     sparse_add(jacobian, row, fish->at.x, -gain * by_head[0]);
     sparse_add(jacobian, row, fish->at.y, -gain * by_head[1]);
     for (int i = 0; i < fish->heading_point.n; i++) {
@@ -251,15 +321,9 @@ void control_jacobian(const struct fish *fish, const struct control_memory *memo
     }
     // the direction to the waypoint turns with the nose; without a waypoint the entries are 0, for a constant pattern
     double by_nose[2] = {0, 0};
-    if (steers_to_waypoint(fish, memory)) {
-        double away[2];
-        waypoint_vector(fish, memory, y, away);
-        const double distance = away[0] * away[0] + away[1] * away[1];
-        by_nose[0] = away[1] / distance;
-        by_nose[1] = -away[0] / distance;
-    }
-    sparse_add(jacobian, row, fish->at.x, gain * by_nose[0]);
-    sparse_add(jacobian, row, fish->at.y, gain * by_nose[1]);
+    if (of.to_waypoint) direction_by_vector(of.away, by_nose);
+    sparse_add(jacobian, row, fish->at.x, -gain * by_nose[0]);
+    sparse_add(jacobian, row, fish->at.y, -gain * by_nose[1]);
 }
 
 void control_advance(struct control_memory *memory, double interval) {

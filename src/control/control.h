@@ -106,6 +106,22 @@ void control_residual(const struct fish *fish, const struct control_memory *memo
 double control_rate(const struct fish *fish, const struct control_memory *memory, double t, double since,
                     const double *y);
 
+/* Add factor[i] times the derivatives of control_rate by positions and velocities to the row first_row + i
+ * (n_rows). */
+void control_rate_jacobian(const struct fish *fish, const struct control_memory *memory, double t, double since,
+                           const double *y, int first_row, int n_rows, const double *factor, struct sparse *jacobian);
+
+/* Whether control_rate depends on the motion between events. */
+bool control_rate_varies(const struct fish *fish);
+
+/* Whether control_rate depends on positions and velocities: law heading. */
+bool control_rate_varies(const struct fish *fish);
+
+/* For a rate that varies: add to each row first_row + i the derivatives of control_rate by positions and velocities
+ * times factor[i] (n_rows). */
+void control_rate_jacobian(const struct fish *fish, const struct control_memory *memory, double t, double since,
+                           const double *y, int first_row, int n_rows, const double *factor, struct sparse *jacobian);
+
 /* Add the derivatives of control_residual. */
 void control_jacobian(const struct fish *fish, const struct control_memory *memory, double t, double since,
                       const double *y, struct sparse *jacobian);

@@ -189,6 +189,7 @@ struct residual *residual_create(struct arena *arena, const struct school *schoo
         if (created->flow->kernel->has_legs && has_edges)
             NEW(arena, scratch->block.edge, 2 * most_points * most_columns);
         NEW(arena, scratch->rows.value, most_rows * most_columns);
+        NEW(arena, scratch->by_phi0_rate, most_rows);
     }
 
     // the partners of each fish: by contact, and by couplings in the Jacobian

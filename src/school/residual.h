@@ -105,10 +105,12 @@ struct residual {
     void *after_step_data;
 };
 
-/* Scratch of the derivatives through the flow, large enough for any pair of fish. */
+/* Scratch of the derivatives: through the flow, large enough for any pair of fish; of the law of motion by the rate of
+ * phi0                                                                                              (2 n_nodes) */
 struct jacobian_scratch {
     struct influence_block block;
     struct coupling_block rows;
+    double *by_phi0_rate;
 };
 
 /* Every evaluation reads the state, which must outlive the residual. */

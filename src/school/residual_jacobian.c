@@ -89,6 +89,13 @@ static void fish_jacobian(struct residual *residual, const struct residual_mode 
     residual_actuate(residual, f, t, y);
     const struct actuation muscle = residual_muscle(residual, f);
     rod_jacobian(fish, &muscle, y, own);
+    const struct control_memory *const memory = &residual->state->control[f];
+    const double since = t - residual->state->t;
+    if (fish->damping == DAMPING_STRAIN && control_rate_varies(fish)) {
+        double *const by_rate = jacobian_scratch->by_phi0_rate;
+        rod_by_phi0_rate(fish, &muscle, y, by_rate);
+        control_rate_jacobian(fish, memory, t, since, y, fish->at.ax, 2 * n, by_rate, own);
+    }
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     rod_clamp_jacobian(fish, t, y, own);
     if (!mode->forces) fluid_force_jacobian(fish, &flow, y, own);
@@ -100,7 +107,7 @@ static void fish_jacobian(struct residual *residual, const struct residual_mode 
     bound_sheet_jacobian(fish, u, v, y, own);
     bound_sheet_kutta_jacobian(fish, residual_sheet_law(residual, mode), ramp_value(t, school->kutta_ramp), cj, u, v, y,
                                own);
-    control_jacobian(fish, &residual->state->control[f], t, t - residual->state->t, y, own);
+    control_jacobian(fish, memory, t, since, y, own);
 
     // dependence through the flow velocity: on the unknowns of this fish, then on the unknowns of coupled fish
     flow_jacobian(residual, mode, f, f, t, y, &jacobian_scratch->block, &jacobian_scratch->rows);

@@ -12,9 +12,6 @@
 // stirred bodies may cross
 #define FAR "solver: {coupling_distance: 100}\ncontact: {action: warn}\n"
 #define PRESSURE TIME "defaults: {fish: {drag: {skin: laminar}}}\n"
-// The Jacobian leaves out how the rate of the bias under the heading law, which the damping of the strain feels,
-// depends on the motion.
-#define UNDAMPED "body: {damping: curvature}, "
 #define FISH "fish: [{}]\n"
 
 /* Every option of doc/model.md at least once, alone or with the options that interact. */
@@ -52,11 +49,11 @@ static const struct variant {
     {"published, extent thickness",
      SMALL "fish: [{force: published, drag: {tangential: 0.1}, added_mass: {extent: thickness}}]\n"},
     {"stream, shear, gust", SMALL "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
-                                  "fish: [{" UNDAMPED "control: {law: heading}}]\n"},
+                                  "fish: [{control: {law: heading}}]\n"},
     {"reactive", SMALL "fish: [{sheet_points: 9, force: reactive, body: {section: mean}}]\n"},
     {"reactive, extent depth, linear-quadratic drag, stream, shear, gust",
      SMALL "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
-           "fish: [{sheet_points: 9, force: reactive, " UNDAMPED "control: {law: heading},\n"
+           "fish: [{sheet_points: 9, force: reactive, control: {law: heading},\n"
            "        drag: {law: linear_quadratic, linear_speed: 0.5}, added_mass: {extent: depth}}]\n"},
     {"reactive, four nodes",
      TIME "fish: [{nodes: 4, sheet_points: 7, force: reactive, added_mass: {extent: depth}}]\n"},
@@ -66,12 +63,14 @@ static const struct variant {
     {"reactive, prescribed head", SMALL "fish: [{sheet_points: 9, force: reactive, added_mass: {extent: depth},\n"
                                         "        motion: {prescribed: head, heave: 0.1, pitch: 10, frequency: 1}}]\n"},
     {"bias", SMALL "fish: [{control: {bias: 0.2}}]\n"},
-    {"heading", SMALL "fish: [{" UNDAMPED "control: {law: heading, desired_heading: 150}}]\n"},
-    {"heading without feedforward",
-     SMALL "fish: [{" UNDAMPED "control: {law: heading, desired_heading: 150, feedforward: 0}}]\n"},
-    {"headings in time",
-     SMALL "fish: [{" UNDAMPED "control: {law: heading, desired_heading: [[0, 180], [1, 120]]}}]\n"},
-    {"waypoints", SMALL "fish: [{" UNDAMPED "control: {law: heading, waypoints: [[-3, 1], [-4, 5]]}}]\n"},
+    {"heading", SMALL "fish: [{control: {law: heading, desired_heading: 150}}]\n"},
+    {"heading, damping of the curvature",
+     SMALL "fish: [{body: {damping: curvature}, control: {law: heading, desired_heading: 150}}]\n"},
+    {"heading, strongly damped",
+     SMALL "fish: [{body: {relaxation_time: 1}, control: {law: heading, desired_heading: 150}}]\n"},
+    {"heading without feedforward", SMALL "fish: [{control: {law: heading, desired_heading: 150, feedforward: 0}}]\n"},
+    {"headings in time", SMALL "fish: [{control: {law: heading, desired_heading: [[0, 180], [1, 120]]}}]\n"},
+    {"waypoints", SMALL "fish: [{control: {law: heading, waypoints: [[-3, 1], [-4, 5]]}}]\n"},
     {"averaged heading", SMALL "fish: [{control: {law: averaged_heading, desired_heading: 150}}]\n"},
     {"averaged heading, waypoints", SMALL "fish: [{control: {law: averaged_heading, waypoints: [[-3, 1]]}}]\n"},
     {"prescribed head", SMALL "fish: [{motion: {prescribed: head, heave: 0.1, pitch: 10, pitch_phase: 70, "
@@ -84,7 +83,7 @@ static const struct variant {
      SMALL CONTINUOUS "sheet: {kutta: rate}\n"
                       "fish: [{load: {tip: [1, 2]}, motion: {prescribed: head, heave: 0.1, frequency: 1}}]\n"},
     {"three fish", SMALL FAR "fluid: {velocity: [0.1, 0.05], shear: 0.2}\n"
-                             "fish:\n  - {" UNDAMPED "control: {law: heading, desired_heading: 150}}\n"
+                             "fish:\n  - {control: {law: heading, desired_heading: 150}}\n"
                              "  - {nodes: 5, length: 0.7, start: {position: [0.2, 0.5], heading: 170},\n"
                              "     force: reactive, drag: {law: linear_quadratic}, control: {law: averaged_heading}}\n"
                              "  - {nodes: 9, length: 1.2, start: {position: [0.1, -0.6], heading: 200},\n"
@@ -96,17 +95,17 @@ static const struct variant {
      "  - {nodes: 9, sheet_points: 11, force: published, start: {position: [0.1, -0.6], heading: 200}}\n"},
     {"three fish, kutta rate, midpoint, waypoints",
      SMALL FAR CONTINUOUS "sheet: {kutta: rate, collocation: midpoint}\n"
-                          "fish:\n  - {" UNDAMPED "control: {law: heading, waypoints: [[-3, 1]]}}\n"
+                          "fish:\n  - {control: {law: heading, waypoints: [[-3, 1]]}}\n"
                           "  - {nodes: 5, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
                           "  - {nodes: 9, length: 1.2, start: {position: [0.1, -0.6], heading: 200},\n"
                           "     body: {second_moment: published, damping: curvature}, control: {law: heading}}\n"},
     {"two fish, polygon", SMALL FAR "sheet: {curve: polygon}\n"
-                                    "fish:\n  - {" UNDAMPED "control: {law: heading, desired_heading: 150}}\n"
+                                    "fish:\n  - {control: {law: heading, desired_heading: 150}}\n"
                                     "  - {nodes: 5, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"},
     {"another smoothing and taper", SMALL "wake: {smoothing: 0.05, taper: 0.4, taper_beside: 0.1}\n" FISH},
     {"three fish, another taper",
      SMALL FAR "wake: {taper: 0.4, taper_beside: 0.1}\n"
-               "fish:\n  - {" UNDAMPED "control: {law: heading, desired_heading: 150}}\n"
+               "fish:\n  - {control: {law: heading, desired_heading: 150}}\n"
                "  - {nodes: 5, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
                "  - {nodes: 9, length: 1.2, start: {position: [0.1, -0.6], heading: 200}}\n"},
     {"pressure", PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}}]\n"},
@@ -117,7 +116,7 @@ static const struct variant {
     {"pressure, a depth for every edge, heading", PRESSURE
      "fish: [{nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}, drag: {skin: laminar, normal: "
      "0.5},\n"
-     "        body: {damping: curvature, profile: table, thickness_table: [0.1, 0.2, 0.15, 0.05],\n"
+     "        body: {profile: table, thickness_table: [0.1, 0.2, 0.15, 0.05],\n"
      "               depth_table: [0.2, 0.3, 0.25, 0.1]},\n"
      "        control: {law: heading, feedforward: 0, desired_heading: 150}}]\n"},
     {"pressure, a boundary layer with transition, waving and form",
@@ -178,7 +177,7 @@ static const struct variant {
               "fish: [{nodes: 5, sheet_points: 26, force: pressure, pressure: {span: finite}}]\n"},
     {"force published, a sine gust",
      SMALL "fluid: {velocity: [0.3, 0], gust: {profile: sine, amplitude: 0.4, wavelength: 1.6}}\n"
-           "fish: [{sheet_points: 9, force: published, " UNDAMPED "control: {law: heading}}]\n"},
+           "fish: [{sheet_points: 9, force: published, control: {law: heading}}]\n"},
     {"two fish of finite span beside a wall, driven",
      TIME FAR "fluid: {walls: [1.5]}\n"
               "defaults: {fish: {force: pressure, pressure: {span: finite}, drag: {skin: laminar}}}\nfish:\n"
@@ -186,7 +185,7 @@ static const struct variant {
               "  - {nodes: 5, sheet_points: 26, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"},
     {"fish in contact that are not coupled otherwise",
      SMALL "solver: {coupling_distance: 0}\ncontact: {range: 0.9}\n"
-           "fish:\n  - {" UNDAMPED "control: {law: heading, desired_heading: 150}}\n"
+           "fish:\n  - {control: {law: heading, desired_heading: 150}}\n"
            "  - {nodes: 5, length: 0.7, start: {position: [0.2, 0.6], heading: 190}}\n"},
     {"three fish in contact, one of them prescribed",
      SMALL "solver: {coupling_distance: 100}\nfluid: {density: 0}\ncontact: {range: 0.9}\n"
