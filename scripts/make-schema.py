@@ -70,6 +70,8 @@ def form(key):
         "[x, y]": {**pair, "items": one},
         "list of numbers": {**LIST, "items": one},
         "list of [x, y]": {**LIST, "items": {**pair, "items": one}},
+        "list of [distance, number], or of numbers": {
+            "anyOf": [{**LIST, "items": {**pair, "items": [{"type": "number"}, one]}}, {**LIST, "items": one}]},
         "list of rows of numbers": {**LIST, "items": {**LIST, "items": one}},
         # the bounds apply to the angle, not to the time
         "number or list of [time, angle]": {

@@ -308,18 +308,26 @@ static void check_body(const struct check *check) {
     const struct wave_parameters *const wave = &fish->wave;
     const int profile = (int)body->profile;
 
-    // one value per edge with a table profile, no list for other profiles
-    const struct {
-        const char *path;
-        int n;
-    } lists[] = {{"fish.body.thickness_table", body->thickness_table.n},
-                 {"fish.body.depth_table", body->depth_table.n}};
+    // with a table profile pairs from nose to tail, or one value per edge; no list for other profiles
+    static const char *const paths[] = {"fish.body.thickness_table", "fish.body.depth_table"};
     for (int i = 0; i < 2; i++) {
-        const bool is_read = lists[i].n > 0 || !check_is_written(check, lists[i].path);
-        complain_if(profile == PROFILE_TABLE && fish->nodes > 0 && is_read && lists[i].n != fish->nodes - 1, check,
-                    lists[i].path, "'profile: table' needs one value per edge, %d for %d nodes; got %d",
-                    fish->nodes - 1, fish->nodes, lists[i].n);
-        complain_if(profile >= 0 && profile != PROFILE_TABLE && lists[i].n > 0, check, lists[i].path,
+        const struct number_list *const list = i == 0 ? &body->thickness_table : &body->depth_table;
+        const bool is_read = list->n > 0 || !check_is_written(check, paths[i]), are_pairs = list->width == 2;
+        const bool is_table = profile == PROFILE_TABLE && is_read;
+        complain_if(is_table && !are_pairs && fish->nodes > 0 && list->n != fish->nodes - 1, check, paths[i],
+                    "'profile: table' needs pairs [distance over length, value], as in [[0, 0.01], [0.3, 0.1], [1, "
+                    "0.02]], or one value per edge, %d for %d nodes; got %d",
+                    fish->nodes - 1, fish->nodes, list->n);
+        bool is_ascending = list->n > 1;
+        for (int k = 0; are_pairs && k < list->n; k++) {
+            const double distance = list->value[2 * k];
+            if (k == 0) is_ascending &= fabs(distance) <= 0;
+            if (k > 0) is_ascending &= distance > list->value[2 * k - 2];
+            if (k == list->n - 1) is_ascending &= fabs(distance - 1) <= 0;
+        }
+        complain_if(is_table && are_pairs && !is_ascending, check, paths[i],
+                    "the distances must grow from 0 at the nose to 1 at the tail, in body lengths");
+        complain_if(profile >= 0 && profile != PROFILE_TABLE && list->n > 0, check, paths[i],
                     "has an effect only with 'profile: table': remove the key");
     }
     complain_if(profile >= 0 && profile != PROFILE_JOUKOWSKI && body->tail_thickness > 0, check,

@@ -23,7 +23,9 @@ static void show_rows(struct text *text, struct case_values *values, struct fish
         if (key->type == STRING && !*(char *const *)field) continue;
         if (key->type == REAL && isnan(*(const double *)field)) continue;
         if (key->type == INTEGER && *(const int *)field < key->bounds.min) continue;
-        if ((key->type == NUMBERS || key->type == ROWS) && ((const struct number_list *)field)->n == 0) continue;
+        if ((key->type == NUMBERS || key->type == PROFILE || key->type == ROWS) &&
+            ((const struct number_list *)field)->n == 0)
+            continue;
 
         // the headings of the sections that do not contain the previous key
         const char *const below = key->path + (fish ? strlen("fish.") : 0), *name = below;

@@ -22,6 +22,7 @@ enum key_type {
     PAIR,         /* double[2] */
     NUMBERS,      /* struct number_list of numbers */
     PAIRS,        /* struct number_list of pairs */
+    PROFILE,      /* struct number_list of numbers, or of pairs (distance, number): then width is 2 */
     ROWS,         /* struct number_list of rows of numbers, all of the same length */
     HEADING,      /* struct number_list of pairs (time, angle); one number is the pair (0, angle) */
     FILES,        /* include: no field in struct case_values */

@@ -28,6 +28,7 @@ void case_value_clear(const struct key *key, void *field) {
         case STRING: *(char **)field = NULL; break;
         case NUMBERS:
         case PAIRS:
+        case PROFILE:
         case ROWS:
         case HEADING: *(struct number_list *)field = (struct number_list){0}; break;
         case FILES:
@@ -145,8 +146,8 @@ static void read_string(const struct context *context, const struct yaml_node *n
 
 // ---- pairs and lists
 
-/* Read a list of n numbers. The bounds of a heading apply to the angle, not to the time. of_row, of_number: the forms
- * of the list and of a number, for messages. */
+/* Read a list of n numbers. The bounds of a heading apply to the angle, not to the time, and those of a profile to the
+ * value, not to the distance. of_row, of_number: the forms of the list and of a number, for messages. */
 static bool read_row(const struct context *context, const struct yaml_node *node, const char *of_row,
                      const char *of_number, int n, double *value) {
     if (node->kind != YAML_LIST || node->n != n) {
@@ -154,13 +155,14 @@ static bool read_row(const struct context *context, const struct yaml_node *node
         return false;
     }
     for (int k = 0; k < n; k++) {
-        const bool is_time = context->key->type == HEADING && k == 0;
-        if (!read_number(context, node->entry[k].value, of_number, !is_time, &value[k])) return false;
+        const bool is_place = (context->key->type == HEADING || context->key->type == PROFILE) && k == 0;
+        if (!read_number(context, node->entry[k].value, of_number, !is_place, &value[k])) return false;
     }
     return true;
 }
 
-/* Read a list of numbers, of pairs, or of rows as long as the first. A heading may be one number: (0, angle). */
+/* Read a list of numbers, of pairs, or of rows as long as the first. A heading may be one number: (0, angle); a profile
+ * has pairs if its first entry is a list. */
 static void read_list(const struct context *context, const struct yaml_node *node, struct number_list *list) {
     const enum key_type type = context->key->type;
     const bool is_list = node->kind == YAML_LIST;
@@ -188,15 +190,17 @@ static void read_list(const struct context *context, const struct yaml_node *nod
         return;
     }
 
-    const int width = type == NUMBERS ? 1 : type == ROWS ? first->n : 2;
+    const bool are_numbers = type == NUMBERS || (type == PROFILE && first->kind != YAML_LIST);
+    const int width = are_numbers ? 1 : type == ROWS ? first->n : 2;
     if (node->n > MAX_VALUES / (type == ROWS ? width : 1)) {
         yaml_errors_add(context->errors, node->mark, "%s: more than %d values", context->path, MAX_VALUES);
         return;
     }
 
     const char *of_number = form;
-    if (type == NUMBERS) of_number = "a list of numbers";
+    if (are_numbers) of_number = "a list of numbers";
     if (type == PAIRS) of_number = "a list of pairs [x, y]";
+    if (type == PROFILE && !are_numbers) of_number = "a list of pairs [distance over length, value]";
     if (type == ROWS) {
         of_number = "rows of numbers";
         snprintf(form, sizeof form, "rows of %d numbers as the first", width);
@@ -207,11 +211,12 @@ static void read_list(const struct context *context, const struct yaml_node *nod
     bool is_good = true;
     for (int i = 0; i < node->n; i++) {
         const struct yaml_node *const one = node->entry[i].value;
-        is_good &= type == NUMBERS
+        is_good &= are_numbers
                        ? read_number(context, one, of_number, true, &value[i])
                        : read_row(context, one, type == ROWS ? form : of_number, of_number, width, &value[i * width]);
     }
-    if (is_good) *list = (struct number_list){node->n, value, type == ROWS ? width : 0};
+    const bool has_width = type == ROWS || (type == PROFILE && !are_numbers);
+    if (is_good) *list = (struct number_list){node->n, value, has_width ? width : 0};
 }
 
 void case_value_read(struct arena *arena, const struct key *key, void *field, const struct yaml_node *node,
@@ -234,6 +239,7 @@ void case_value_read(struct arena *arena, const struct key *key, void *field, co
             break;
         case NUMBERS:
         case PAIRS:
+        case PROFILE:
         case ROWS:
         case HEADING: read_list(&context, node, field); break;
         case FILES:
@@ -267,6 +273,12 @@ void case_value_write(struct text *text, const struct key *key, const void *fiel
         case STRING: yaml_write_scalar(text, *(char *const *)field); break;
         case PAIR: write_row(text, 2, field); break;
         case NUMBERS: write_row(text, list->n, list->value); break;
+        case PROFILE:
+            if (list->width != 2) {
+                write_row(text, list->n, list->value);
+                break;
+            }
+            /* fall through */
         case PAIRS:
         case ROWS:
         case HEADING:

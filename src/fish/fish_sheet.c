@@ -218,8 +218,11 @@ enum status fish_sheet_set(struct arena *arena, struct fish *fish, int f, const 
 int fish_sheet_least(const struct fish_parameters *from) {
     if (!fish_is_strip(from)) return 0;
     double depth = from->body.depth * from->length;
-    for (int k = 0; from->body.profile == PROFILE_TABLE && k < from->body.depth_table.n; k++) {
-        depth = k == 0 ? from->body.depth_table.value[0] : fmin(depth, from->body.depth_table.value[k]);
+    // the interpolation of pairs is monotone: no depth is below the values
+    const struct number_list *const table = &from->body.depth_table;
+    for (int k = 0; from->body.profile == PROFILE_TABLE && k < table->n; k++) {
+        const double value = table->width == 2 ? table->value[2 * k + 1] : table->value[k];
+        depth = k == 0 ? value : fmin(depth, value);
     }
 
     const double least = ceil(1 + 5 * from->length / depth * (1 - 1e-9));

@@ -34,7 +34,7 @@ enum control_law { CONTROL_NONE, CONTROL_HEADING, CONTROL_AVERAGED_HEADING, CONT
 struct number_list {
     int n;
     double *value;
-    int width; /* of a list of rows: numbers per row */
+    int width; /* of a list of rows, or of pairs in place of numbers: numbers per row */
 };
 
 struct fluid_parameters {
@@ -87,7 +87,8 @@ struct body_parameters {
     enum profile profile;
     double thickness, depth; /* fractions of the body length; the depth is the span, out of the plane of motion */
     double tail_thickness;   /* fraction of the body length: profile joukowski only */
-    struct number_list thickness_table, depth_table; /* m, one value per edge: profile table only */
+    struct number_list thickness_table, depth_table; /* m, one value per edge, or of width 2 pairs (distance from the
+                                                        nose over the length, m): profile table only */
     enum section section;                            /* of an edge: mean over the edge, or mean of both nodes */
     double density;                                  /* kg m-3 */
     double modulus;                                  /* Pa */

@@ -215,6 +215,94 @@ static struct profile_edge joukowski_edge(const struct fish_parameters *fish, in
     return edge;
 }
 
+// The slope at pair i of a table: the weighted harmonic mean of both neighbouring secants, 0 at an extremum; at an end
+// the parabola through three pairs, limited where it would not be monotone (Fritsch and Butland, SIAM Journal on
+// Scientific and Statistical Computing 5, 1984).
+static double table_slope(const struct number_list *table, int i) {
+    const double(*const at)[2] = (const double(*)[2])table->value;
+    const int last = table->n - 1;
+    const bool is_end = i == 0 || i == last;
+    if (table->n == 2) return (at[1][1] - at[0][1]) / (at[1][0] - at[0][0]);
+
+    // the two intervals beside an inner pair, or next to the end
+    const int from = i == 0 ? 0 : i == last ? last - 2 : i - 1;
+    double length[2], secant[2];
+    for (int j = 0; j < 2; j++) {
+        length[j] = at[from + j + 1][0] - at[from + j][0];
+        secant[j] = (at[from + j + 1][1] - at[from + j][1]) / length[j];
+    }
+    if (!is_end) {
+        if (!(secant[0] * secant[1] > 0)) return 0;
+        const double w0 = 2 * length[1] + length[0], w1 = length[1] + 2 * length[0];
+        return (w0 + w1) / (w0 / secant[0] + w1 / secant[1]);
+    }
+    const int near = i == 0 ? 0 : 1, far = 1 - near;
+    const double slope =
+        ((2 * length[near] + length[far]) * secant[near] - length[near] * secant[far]) / (length[near] + length[far]);
+    if (!(slope * secant[near] > 0)) return 0;
+    const bool turns = secant[near] * secant[far] <= 0;
+    return turns && fabs(slope) > 3 * fabs(secant[near]) ? 3 * secant[near] : slope;
+}
+
+// The value in interval i of a table at a distance over the length: the cubic with the slopes of both ends.
+static double table_value(const struct number_list *table, int i, double distance) {
+    const double(*const at)[2] = (const double(*)[2])table->value;
+    const double length = at[i + 1][0] - at[i][0], x = (distance - at[i][0]) / length, y = 1 - x;
+    return y * y * (1 + 2 * x) * at[i][1] + x * x * (1 + 2 * y) * at[i + 1][1] +
+           x * y * length * (y * table_slope(table, i) - x * table_slope(table, i + 1));
+}
+
+// The means of the first, second and third power of a table over edge k of n, exact: five points for degree 9 in each
+// interval of the table; or with section nodes the mean of both ends.
+static void table_means(const struct number_list *table, int k, int n, enum section section, double mean[3]) {
+    enum { N = 5 };
+    const double from = (double)k / n, to = k + 1 < n ? (k + 1.0) / n : 1;
+    double node[N], weight[N];
+    quadrature_legendre(N, node, weight);
+    mean[0] = mean[1] = mean[2] = 0;
+    for (int i = 0; i + 1 < table->n; i++) {
+        const double first = table->value[2 * i], last = table->value[2 * i + 2];
+        const double start = fmax(from, first), end = fmin(to, last);
+        if (section == SECTION_NODES) {
+            // each end in the interval that it begins, the tail in the last one
+            const bool is_last = i + 2 == table->n;
+            if (from >= first && from < last) mean[0] += table_value(table, i, from) / 2;
+            if (to >= first && (to < last || is_last)) mean[0] += table_value(table, i, to) / 2;
+            continue;
+        }
+        for (int j = 0; j < N && end > start; j++) {
+            const double value = table_value(table, i, start + (end - start) * node[j]);
+            const double part = weight[j] * (end - start) / (to - from);
+            mean[0] += part * value;
+            mean[1] += part * value * value;
+            mean[2] += part * value * value * value;
+        }
+    }
+}
+
+// Edge k of a table: given, or of pairs.
+static struct profile_edge table_edge(const struct fish_parameters *fish, int k) {
+    const struct number_list *const h = &fish->body.thickness_table, *const w = &fish->body.depth_table;
+    const enum section section = fish->body.section;
+    struct profile_edge edge = {.square = 1, .cube = 1};
+    double mean[3];
+    if (h->width == 2) {
+        table_means(h, k, fish->nodes - 1, section, mean);
+        edge.h = mean[0];
+        if (section == SECTION_MEAN) edge.square = mean[1] / (mean[0] * mean[0]);
+        if (section == SECTION_MEAN) edge.cube = mean[2] / (mean[0] * mean[0] * mean[0]);
+    } else {
+        edge.h = h->value[k];
+    }
+    if (w->width == 2) {
+        table_means(w, k, fish->nodes - 1, section, mean);
+        edge.w = mean[0];
+    } else {
+        edge.w = w->value[k];
+    }
+    return edge;
+}
+
 struct profile_edge profile_edge(const struct fish_parameters *fish, int k) {
     const struct body_parameters *body = &fish->body;
     struct profile_edge edge = {.square = 1, .cube = 1};
@@ -224,16 +312,15 @@ struct profile_edge profile_edge(const struct fish_parameters *fish, int k) {
             edge.h = body->thickness * fish->length;
             edge.w = body->depth * fish->length;
             break;
-        case PROFILE_TABLE:
-            edge.h = body->thickness_table.value[k];
-            edge.w = body->depth_table.value[k];
-            break;
+        case PROFILE_TABLE: return table_edge(fish, k);
     }
 
     return edge;
 }
 
 double profile_tail_thickness(const struct fish_parameters *fish) {
-    return fish->body.profile == PROFILE_JOUKOWSKI ? fish->body.tail_thickness * fish->length
-                                                   : profile_edge(fish, fish->nodes - 2).h;
+    const struct number_list *const table = &fish->body.thickness_table;
+    if (fish->body.profile == PROFILE_JOUKOWSKI) return fish->body.tail_thickness * fish->length;
+    if (fish->body.profile == PROFILE_TABLE && table->width == 2) return table->value[2 * table->n - 1];
+    return profile_edge(fish, fish->nodes - 2).h;
 }

@@ -61,7 +61,8 @@ struct profile_edge {
 /* Edge k of a fish. body.section mean: means over the edge; nodes: the mean of both ends, square and cube are 1. */
 struct profile_edge profile_edge(const struct fish_parameters *fish, int k);
 
-/* Thickness at the tail, m: body.tail_thickness for a joukowski outline, otherwise the thickness of the last edge. */
+/* Thickness at the tail, m: body.tail_thickness for a joukowski outline, the last pair of a table of pairs, otherwise
+ * the thickness of the last edge. */
 double profile_tail_thickness(const struct fish_parameters *fish);
 
 #endif

@@ -337,7 +337,14 @@ static enum status choose_levels(struct error_study *study) {
         }
 
         if (key->n_levels > 1) continue;
-        snprintf(key->objection, CONVERGENCE_BYTES, "no other level is a valid case");
+
+        // the reason of the next finer level: the message without its place in the text
+        const double next = row->kind == SWEEP_POINTS ? round(base * row->finer) : base * row->finer;
+        const bool is_refused = row->finer > 0 && !is_valid_level(study, k, next);
+        const char *const message = is_refused ? strstr(status_message(), "error: ") : NULL;
+        const char *const reason = message ? message + strlen("error: ") : "";
+        snprintf(key->objection, CONVERGENCE_BYTES, "no other level is a valid case%s%.*s", *reason ? ": " : "",
+                 (int)strcspn(reason, "\n"), reason);
     }
 
     return STATUS_OK;

@@ -304,8 +304,8 @@ static struct value error_value(const struct contents *contents, const struct va
         case KEY_STATED: return (struct value){.number = key ? key->stated : 0};
         case KEY_VALUE: return (struct value){.number = i[1] < n_levels ? key->value[i[1]] : NAN};
         case KEY_MEMBER: return (struct value){.number = i[1] < n_levels ? key->member[i[1]] : -1};
-        case PART: return (struct value){.number = key ? key->part[place].error : NAN};
-        case KEY_ORDER: return (struct value){.number = key ? key->part[place].order : NAN};
+        case PART: return (struct value){.number = n_levels > 1 ? key->part[place].error : NAN};
+        case KEY_ORDER: return (struct value){.number = n_levels > 1 ? key->part[place].order : NAN};
         default:
             *text = '\0';
             if (n_levels > 1) study_print_reason(point, key, place, text);

@@ -528,7 +528,12 @@ static int decimals_for(double number) {
     return decimals < 0 ? 0 : decimals > 12 ? 12 : decimals;
 }
 
-/* "0.9364 +- 0.0019 m s-1 (0.2 %)" */
+/* Whether a numerical key belongs to the error but has no other level. */
+static bool is_missing(const struct error_study_key *key) {
+    return key->row->kind != SWEEP_MODEL && key->n_levels == 1;
+}
+
+/* "0.9364 +- 0.0019 m s-1 (0.2 %), without nodes" */
 static void print_value(const struct error_study *study, int q, int f, FILE *stream) {
     const int place = error_plan_place(study, q, f);
     const double value = study->value[place], error = study->error[place];
@@ -555,6 +560,13 @@ static void print_value(const struct error_study *study, int q, int f, FILE *str
             fprintf(stream, " (%+.*f +- %.*f %%)", of_percent, 100 * (value - 1), of_percent, 100 * error);
         } else if (study->relation == ERROR_VALUE && fabs(value) > 0) {
             fprintf(stream, " (%.2g %%)", 100 * error / fabs(value));
+        }
+
+        // numerical keys that could not be varied: ", without nodes, lifetime"
+        int n_missing = 0;
+        for (int k = 0; k < study->n_keys; k++) {
+            if (!is_missing(&study->key[k])) continue;
+            fprintf(stream, "%s %s", n_missing++ > 0 ? "," : ", without", strrchr(study->key[k].row->path, '.') + 1);
         }
         fprintf(stream, "\n");
     }
@@ -806,6 +818,23 @@ static void print_points(const struct error_sweep *sweep, const struct member_fi
         if (!row || row->kind == SWEEP_MODEL) continue;
         fprintf(stream, "%s is swept: the errors do not include it\n", axis->key[c].path);
     }
+    // a numerical key that some points could not vary, with the reason of the first
+    for (int i = 0; i < SWEEP_N_ERROR_KEYS; i++) {
+        const struct error_study_key *missing = NULL;
+        int n_missing = 0, first_missing = 0;
+        for (int p = 0; p < sweep->n_points; p++) {
+            for (int k = 0; k < sweep->point[p].n_keys; k++) {
+                const struct error_study_key *const key = &sweep->point[p].key[k];
+                if (key->row != &sweep_error_keys[i] || !is_missing(key)) continue;
+                if (n_missing++ > 0) continue;
+                missing = key;
+                first_missing = p;
+            }
+        }
+        if (!missing) continue;
+        fprintf(stream, "the errors of %d point%s, the first is %d, do not include %s: %s\n", n_missing,
+                n_missing > 1 ? "s" : "", first_missing, missing->row->path, missing->objection);
+    }
     bool are_shared = false;
     for (int p = 0; p < sweep->n_points; p++) are_shared |= !sweep->point[p].is_full;
     if (are_shared) {
@@ -925,8 +954,12 @@ static void write_csv_rows(const struct error_sweep *sweep, FILE *file) {
             char levels[LEVEL_BYTES], reason[CONVERGENCE_BYTES];
             for (int k = 0; k < study->n_keys; k++) {
                 const struct error_study_key *const key = &study->key[k];
-                if (key->n_levels == 1) continue;
                 write_levels(study, key, levels);
+                if (is_missing(key)) {
+                    snprintf(reason, CONVERGENCE_BYTES, "not varied: %.200s", key->objection);
+                    write_csv_row(&row, key->row->path, levels, study->value[place], NAN, NAN, reason);
+                }
+                if (key->n_levels == 1) continue;
                 study_print_reason(study, key, place, reason);
                 const char *const verdict = key->row->kind == SWEEP_MODEL ? of_model
                                             : *reason                     ? reason

@@ -451,6 +451,8 @@ TEST(a_case_shown_reads_back_bit_for_bit) {
         "fish:\n"
         "  - {nodes: 4, body: {profile: table, thickness_table: [0.1, 0.2, 0.3], depth_table: [1e-7, 1e7, "
         "12345.678901234567]}}\n"
+        "  - {body: {profile: table, thickness_table: [[0, 0.1], [0.3, 0.2], [1, 0.1]], depth_table: [[0, 1], [1, "
+        "2]]}}\n"
         "  - {name: '#2', control: {law: averaged_heading, desired_heading: [[0, 1], [0.1, 2]], filter: 3}}\n"
         "  - {control: {waypoints: [[1, 2]], damping: 0.3}}\n",
         // without the preset, whose feedforward is 1; one fish for each law, some with their own frequency

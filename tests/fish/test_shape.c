@@ -242,6 +242,103 @@ TEST(uniform_and_table_have_one_section_along_an_edge) {
     }
 }
 
+// a fish of the test foil with pairs of thickness and depth
+static struct fish_parameters measured(int nodes, enum section section, int n, double *h, int m, double *w) {
+    struct fish_parameters fish = foil(nodes, 0.1, section);
+    fish.body.profile = PROFILE_TABLE;
+    fish.body.thickness_table = (struct number_list){.n = n, .value = h, .width = 2};
+    fish.body.depth_table = (struct number_list){.n = m, .value = w, .width = 2};
+    return fish;
+}
+
+TEST(pairs_on_a_line_give_the_means_of_a_wedge) {
+    // h = 0.1 + 0.2 s, w = 0.3 - 0.1 s; the middle pair of h is on the line
+    double h[] = {0, 0.1, 0.3, 0.16, 1, 0.3}, w[] = {0, 0.3, 1, 0.2};
+    for (int nodes = 4; nodes <= 9; nodes += 5) {
+        const struct fish_parameters fish = measured(nodes, SECTION_MEAN, 3, h, 2, w);
+        for (int k = 0; k + 1 < nodes; k++) {
+            const double n = nodes - 1, a = 0.1 + 0.2 * k / n, b = 0.1 + 0.2 * (k + 1) / n;
+            const struct profile_edge edge = profile_edge(&fish, k);
+            NEAR(edge.h, (a + b) / 2, 1e-14, 0);
+            NEAR(edge.square * edge.h * edge.h, (a * a + a * b + b * b) / 3, 1e-13, 0);
+            NEAR(edge.cube * edge.h * edge.h * edge.h, (a + b) * (a * a + b * b) / 4, 1e-13, 0);
+            NEAR(edge.w, 0.3 - 0.1 * (k + 0.5) / n, 1e-14, 0);
+        }
+        NEAR(profile_tail_thickness(&fish), 0.3, 0, 0);
+    }
+}
+
+TEST(the_sections_of_nodes_are_those_of_the_pairs) {
+    double h[] = {0, 0.1, 1.0 / 3, 0.4, 2.0 / 3, 0.2, 1, 0.1}, w[] = {0, 0.3, 1, 0.2};
+    const struct fish_parameters fish = measured(4, SECTION_NODES, 4, h, 2, w);
+    const double means[] = {0.25, 0.3, 0.15};
+    for (int k = 0; k < 3; k++) {
+        const struct profile_edge edge = profile_edge(&fish, k);
+        NEAR(edge.h, means[k], 1e-14, 0);
+        NEAR(edge.cube, 1, 0, 0);
+    }
+}
+
+TEST(values_between_pairs_stay_between_them) {
+    // a step, an extremum, and unequal distances, where a spline would exceed the values; the mean over an edge of a
+    // monotone interval lies between the values at its ends
+    double h[] = {0, 0.1, 0.1, 0.1, 0.15, 0.4, 0.5, 0.4, 0.9, 0.05, 1, 0.06}, w[] = {0, 0.3, 1, 0.3};
+    const int n = 400;
+    const struct fish_parameters fish = measured(n + 1, SECTION_MEAN, 6, h, 2, w);
+    double before = 0.1;
+    for (int k = 0; k < n; k++) {
+        const struct profile_edge edge = profile_edge(&fish, k);
+        const double middle = (k + 0.5) / n;
+        assert_true(edge.h >= 0.05 - 1e-15 && edge.h <= 0.4 + 1e-15);
+        if (middle < 0.5) assert_true(edge.h >= before - 1e-15);
+        if (middle > 0.5 && middle < 0.9) assert_true(edge.h <= before + 1e-15);
+        if (middle < 0.1) NEAR(edge.h, 0.1, 1e-14, 0);
+        if (middle > 0.15 && middle < 0.5) NEAR(edge.h, 0.4, 1e-14, 0);
+        before = edge.h;
+    }
+}
+
+TEST(mass_and_stiffness_do_not_depend_on_the_nodes) {
+    // the sums of <h> and <h^3> over the edges are integrals of the same cubics for any number of edges
+    double h[] = {0, 0.02, 0.15, 0.11, 0.5, 0.13, 0.8, 0.05, 1, 0.01}, w[] = {0, 0.3, 1, 0.3};
+    double first[2] = {0, 0};
+    for (int nodes = 5; nodes <= 40; nodes += 7) {
+        const struct fish_parameters fish = measured(nodes, SECTION_MEAN, 5, h, 2, w);
+        double sum[2] = {0, 0};
+        for (int k = 0; k + 1 < nodes; k++) {
+            const struct profile_edge edge = profile_edge(&fish, k);
+            sum[0] += edge.h / (nodes - 1);
+            sum[1] += edge.cube * edge.h * edge.h * edge.h / (nodes - 1);
+        }
+        for (int i = 0; i < 2; i++) {
+            if (nodes == 5) first[i] = sum[i];
+            NEAR(sum[i], first[i], 1e-13, 0);
+        }
+    }
+}
+
+TEST(a_parabola_is_interpolated_to_third_order_at_a_smooth_monotone_place) {
+    // h = (s + 0.2)^2: the harmonic mean of secants is a second-order slope
+    double error[2];
+    for (int r = 0; r < 2; r++) {
+        const int n = 11 * (r + 1) - r;
+        double h[2 * 22], w[] = {0, 0.3, 1, 0.3};
+        for (int i = 0; i < n; i++) {
+            h[2 * i] = (double)i / (n - 1);
+            h[2 * i + 1] = (h[2 * i] + 0.2) * (h[2 * i] + 0.2);
+        }
+        const int edges = 997;
+        const struct fish_parameters fish = measured(edges + 1, SECTION_NODES, n, h, 2, w);
+        error[r] = 0;
+        for (int k = 300; k < 700; k++) {
+            const double a = (double)k / edges + 0.2, b = (k + 1.0) / edges + 0.2;
+            error[r] = fmax(error[r], fabs(profile_edge(&fish, k).h - (a * a + b * b) / 2));
+        }
+    }
+    assert_true(error[0] < 1e-3);
+    assert_true(error[0] / error[1] > 6);
+}
+
 TEST(a_foil_ends_in_a_cusp_or_with_the_thickness_of_its_tail) {
     struct fish_parameters fish = foil(4, 0.1, SECTION_MEAN);
     NEAR(profile_tail_thickness(&fish), 0, 0, 0);

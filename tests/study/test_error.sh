@@ -264,7 +264,9 @@ check a_study_shows_four_fish_too eval 'has out "The first 4 of 5 fish; study.nc
 run error five.yaml -o one --of speed --of steps --set 'sweep=[]' --set 'expect=[]' --set 'error={of: speed, keys: [nodes, rtol]}' --set \
     'fish[*].body={profile: table, thickness_table: [.1, .1, .1, .1, .1, .1], depth_table: [.2, .2, .2, .2, .2, .2]}'
 check a_key_without_a_level_is_not_varied grep -qE '^fish.nodes +\[7\] +not varied +not varied$' out
-check the_reason_is_said has out 'not varied: fish.nodes: no other level is a valid case'
+check the_reason_is_said has out "not varied: fish.nodes: no other level is a valid case: fish[0].body.thickness_table: 'profile: table' needs pairs"
+check the_headline_says_what_is_missing grep -qE '^speed of a: .*%\), without nodes$' out
+check the_table_has_a_row_for_it grep -qE '^"a",speed,.*,fish.nodes,\[7\],nan,nan,nan,"not varied: no other' one/error.csv
 check so_does_one_case has out 'The first 4 of 5 fish; error.csv and study.nc have all.'
 check a_number_of_the_run_is_not_of_a_fish test "$(grep -c '^steps: ' out)-$(grep -c '^speed of ' out)" = 1-4
 

@@ -122,7 +122,15 @@ TEST(levels_that_are_no_valid_cases_are_replaced) {
         "  depth_table: [0.2, 0.2, 0.2, 0.2]}}]\n",
         "{of: speed}");
     assert_int_equal(key_of(&study, "fish.nodes")->n_levels, 1);
-    assert_non_null(strstr(key_of(&study, "fish.nodes")->objection, "no other level"));
+    assert_non_null(
+        strstr(key_of(&study, "fish.nodes")->objection,
+               "no other level is a valid case: fish[0].body.thickness_table: 'profile: table' needs pairs"));
+    // pairs hold for any number of nodes
+    study = open_study(
+        "format: 1\ntime: {end: 4}\nfish: [{force: reactive, nodes: 25, sheet_points: 49, body: {profile: table,\n"
+        "  thickness_table: [[0, 0.02], [0.3, 0.1], [1, 0.02]], depth_table: [[0, 0.2], [1, 0.2]]}}]\n",
+        "{of: speed}");
+    levels_are(&study, "fish.nodes", 4, (double[]){35, 25, 17, 13}, 25);
 }
 
 TEST(an_interval_divides_the_beat_or_the_run) {
