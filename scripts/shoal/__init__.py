@@ -26,12 +26,12 @@ from . import _library
 from ._environments import SchoolEnv, SwimEnv, SwimVectorEnv
 from ._library import CaseError, Error, FileError, SolverError, version
 from ._program import CaseWarning, Check, Estimate, Page, Steady, check, error, steady, study, view
-from ._results import open, periods  # noqa: A004 - shoal.open, as gzip.open
+from ._results import grid, open, periods  # noqa: A004 - shoal.open, as gzip.open
 from ._run import Run, Variable, load, run, variables
 
 simulate = run
 
-__all__ = ["Run", "run", "simulate", "load", "check", "steady", "study", "error", "open", "periods", "view", "variables", "version",
+__all__ = ["Run", "run", "simulate", "load", "check", "steady", "study", "error", "open", "grid", "periods", "view", "variables", "version",
            "Variable", "Check", "Steady", "Estimate", "Page", "SwimEnv", "SwimVectorEnv", "SchoolEnv", "Error", "CaseError", "FileError",
            "SolverError", "CaseWarning", "__version__"]
 

@@ -226,7 +226,8 @@ def _run_study(command, case, assignments, path, overwrite, processes, progress,
 
 def study(case, assignments=None, path=None, overwrite: bool = False, processes: int | None = None,
           progress: bool | None = None, folder=None):
-    """Run all members of a case with a sweep (doc/studies.md); returns study.nc as an xarray.Dataset.
+    """Run all members of a case with a sweep (doc/studies.md); returns study.nc as an xarray.Dataset, in which the swept
+    keys are coordinates: data.speed.plot(x="body_modulus"). shoal.grid gives each axis of the sweep a dimension.
 
     path: of the folder of the study (None: the name of the case with -study). overwrite: replace a study that exists;
     else members that are complete are kept. processes: members at once. The path of study.nc is in attrs["path"].

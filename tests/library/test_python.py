@@ -621,10 +621,51 @@ class Programs(unittest.TestCase):
             warnings.simplefilter("ignore")
             data = shoal.study(case, processes=1)
         np.testing.assert_array_equal(data["fish0_wave_frequency"], [0.9, 1.1])
+        self.assertEqual(data["fish0_wave_frequency"].dims, ("member",))
+        self.assertIn("fish0_wave_frequency", data.coords)
         self.assertEqual((data["speed"].dims, list(data["fish"].values)), (("member", "fish"), ["a", "b"]))
         self.assertEqual(data.attrs["path"], "swept-study/study.nc")
         with self.assertRaisesRegex(shoal.CaseError, "processes is an integer from 1"):
             shoal.study(case, processes=0)
+
+    def test_a_sweep_is_a_grid(self):
+        sweep = [{"keys": ["fish[*].body.modulus", "fish[*].nodes"], "values": [[1e6, 7], [1e5, 8]]},
+                 {"key": "fish[1].wave.phase", "values": [0, 30, 60]}]
+        case = {**PAIR, "name": "plane", "time": {"end": 0.02, "shedding_interval": 0.01}, "sweep": sweep}
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            data = shoal.study(case, processes=1)
+        self.assertLessEqual({"body_modulus", "nodes", "fish1_wave_phase"}, {*data.coords})
+        plane = shoal.grid(data)
+        self.assertEqual(plane["speed"].dims, ("body_modulus", "fish1_wave_phase", "fish"))
+        np.testing.assert_array_equal(plane["body_modulus"], [1e6, 1e5])  # in the order of the case
+        self.assertEqual(plane["nodes"].dims, ("body_modulus",))
+        self.assertEqual(plane["nose"].dims[-1], "xy")
+        for m in range(6):
+            at = {key: data[key].values[m] for key in ("body_modulus", "fish1_wave_phase")}
+            np.testing.assert_array_equal(plane["speed"].sel(at), data["speed"][m])
+            self.assertEqual(plane["member"].sel(at), m)
+        with self.assertRaisesRegex(shoal.CaseError, "the 5 members are no full grid of body_modulus, fish1_wave_phase"):
+            shoal.grid(data.isel(member=slice(5)))
+        with self.assertRaisesRegex(shoal.CaseError, "no swept keys"):
+            shoal.grid(data.drop_vars(["body_modulus", "nodes", "fish1_wave_phase"]))
+
+    def test_one_and_many_points_have_the_same_dimensions(self):
+        error = {"of": "speed", "keys": {"rtol": [1e-3, 1e-4]}}
+        case = {**PAIR, "name": "points", "time": {"end": 0.02, "shedding_interval": 0.01}, "error": error}
+        sweep = {"sweep": [{"key": "fish[*].body.modulus", "values": [1e5, 1e6]}]}
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            one, many = (shoal.study(these, processes=1, path=f"of-{n}")
+                         for n, these in ((1, case), (2, {**case, **sweep})))
+        for name in ("stated_speed", "bar_speed", "part_speed", "key_value", "key_levels", "point_member"):
+            self.assertEqual(one[name].dims, many[name].dims, name)
+        self.assertEqual((one.sizes["point"], many.sizes["point"]), (1, 2))
+        np.testing.assert_array_equal(many["body_modulus"], [1e5, 1e6])
+        self.assertEqual(many["body_modulus"].dims, ("point",))
+        self.assertEqual(many["bar_speed"].dims, ("point", "fish"))
+        self.assertEqual(shoal.grid(many)["stated_speed"].dims, ("body_modulus", "fish"))
+        self.assertEqual(one["stated_speed"][0, 0], one["speed"][int(one["point_member"][0]), 0])
 
     def test_an_error_is_the_number_of_the_program(self):
         with warnings.catch_warnings():
