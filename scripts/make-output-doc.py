@@ -81,7 +81,7 @@ Readers can open the file at any time, and again to see new rows. A killed run k
 
 | `run_status` | meaning |
 |---|---|
-| `running` | the run continues, or was killed: `shoal resume` continues from a checkpoint |
+| `running` | the run continues, or was killed: `shoal resume RUN.nc` continues from its checkpoint |
 | `complete` | the run reached `time.end` |
 | `stopped` | stopped by a signal or `--max-wall`; `shoal resume` continues ([reliability.md](reliability.md)) |
 | `failed: ...` | the integration or the writing failed, or bodies met with `contact.action: stop`; the rows are valid |

@@ -75,7 +75,10 @@ enum status main_new(const struct request *request) {
 
 enum status main_info(const struct request *request) {
     const char *const path = request->positional;
-    if (!request->json) return main_print_info(request->arena, path, request->case_only);
+    const enum main_info part = request->case_only ? MAIN_INFO_CASE
+                                : request->verbose ? MAIN_INFO_ALL
+                                                   : MAIN_INFO_SUMMARY;
+    if (!request->json) return main_print_info(request->arena, path, part);
     if (request->case_only) return status_fail(STATUS_CASE, "info: --case prints a case file, which is not JSON");
     if (target_is(path, TARGET_CHECKPOINT)) {
         return status_fail(STATUS_CASE, "info: %s is a checkpoint; --json needs the file of a run, a study or a field",
@@ -85,12 +88,15 @@ enum status main_info(const struct request *request) {
     return result_kind_info(request->arena, N_KINDS, kinds, path, RESULT_INFO_JSON, stdout);
 }
 
-enum status main_print_info(struct arena *arena, const char *path, int case_only) {
-    const enum result_info_form form = case_only ? RESULT_INFO_CASE : RESULT_INFO_TEXT;
+enum status main_print_info(struct arena *arena, const char *path, enum main_info part) {
+    static const enum checkpoint_part of_checkpoint[] = {[MAIN_INFO_SUMMARY] = CHECKPOINT_SUMMARY,
+                                                         [MAIN_INFO_ALL] = CHECKPOINT_STATE,
+                                                         [MAIN_INFO_CASE] = CHECKPOINT_CASE};
+    const enum result_info_form form = part == MAIN_INFO_CASE ? RESULT_INFO_CASE : RESULT_INFO_TEXT;
     struct say_page page;
     TRY(say_begin(&page));
     return say_end(&page, stdout,
                    target_is(path, TARGET_CHECKPOINT)
-                       ? checkpoint_info(arena, path, case_only, page.stream)
+                       ? checkpoint_info(arena, path, of_checkpoint[part], page.stream)
                        : result_kind_info(arena, N_KINDS, kinds, path, form, page.stream));
 }

@@ -35,8 +35,10 @@ enum status main_export(const struct request *request);
 /* Read the case of a request, with the assignments, into the arena of the request. Fails as case_read. */
 enum status main_read_case(const struct request *request, struct case_values *values);
 
-/* Print a summary of a file of shoal, or only the case in the file. Fails with STATUS_FILE or STATUS_MEMORY. */
-enum status main_print_info(struct arena *arena, const char *path, int case_only);
+/* Print a summary of a file of shoal, all of it, or only the case in the file. Fails with STATUS_FILE or
+ * STATUS_MEMORY. */
+enum main_info { MAIN_INFO_SUMMARY, MAIN_INFO_ALL, MAIN_INFO_CASE };
+enum status main_print_info(struct arena *arena, const char *path, enum main_info part);
 
 // ---- main_signals.c: stop requests by signals and time limits; exits of libraries. Tested by
 // tests/app/test_command.sh and tests/study/test_study.sh.

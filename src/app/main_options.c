@@ -60,7 +60,7 @@ static const struct option_help all_options[] = {
     {OPTION_SET, "set", "KEY=VALUE", "set a key of the case: fish[0].wave.frequency=1.2, fish[*].nodes=13"},
     {OPTION_THREADS, "threads", "N", "threads of a run; same as --set solver.threads=N"},
     {'q', "quiet", NULL, "suppress progress, notes and summary; warnings are still printed"},
-    {'v', "verbose", NULL, "print a summary of the result at the end"},
+    {'v', "verbose", NULL, "print a summary of the result at the end; info: the state in a checkpoint too"},
     {OPTION_JSON, "json", NULL, "print JSON"},
     {OPTION_OUTPUT, "output", NULL, "list the variables of result files instead of the keys of cases"},
     {OPTION_CASE, "case", NULL, "print only the complete case stored in the file"},

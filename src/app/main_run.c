@@ -102,7 +102,7 @@ static enum status run_case(const struct case_values *values, const struct reque
     if (trace) TRY(trace_close(trace));
 
     if (request->verbose) {
-        TRY(main_print_info(request->arena, teller.path, 0));
+        TRY(main_print_info(request->arena, teller.path, MAIN_INFO_SUMMARY));
     } else if (!request->quiet) {
         say_line(stdout, "%s\n", teller.path);
     }

@@ -176,6 +176,10 @@ const struct key case_table[] = {
      .meaning = "time between two checkpoints for `shoal resume`, an integer multiple of shedding_interval; 0: only "
                 "when the run is stopped",
      .synonyms = "checkpoint restart_interval checkpoint_every save_every"},
+    {"time.checkpoint_wall", REAL, AT(time.checkpoint_wall), "60", FROM(0), "s",
+     .meaning = "wall time between two checkpoints from which a killed run continues; they change no bit of the run, "
+                "and are removed at its end; 0: none",
+     .synonyms = "autosave checkpoint_seconds checkpoint_minutes backup"},
 
     {"fluid.density", REAL, AT(school.fluid.density), "1000", FROM(0), "kg m-3",
      .meaning = "density of the fluid; 0: no fluid forces", .synonyms = "rho rho_f"},

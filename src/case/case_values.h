@@ -14,6 +14,7 @@ struct case_time {
     double end;                 /* s */
     double output_interval;     /* s; default ten shedding intervals */
     double checkpoint_interval; /* s; 0: only when the run is stopped */
+    double checkpoint_wall;     /* wall time after which the next event has a checkpoint, s; 0: never */
 };
 
 struct case_solver {

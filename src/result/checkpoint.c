@@ -201,11 +201,11 @@ enum status checkpoint_check_target(struct arena *arena, const char *path, const
     return is_other ? STATUS_FILE : STATUS_OK;
 }
 
-enum status checkpoint_info(struct arena *arena, const char *path, bool case_only, FILE *stream) {
+enum status checkpoint_info(struct arena *arena, const char *path, enum checkpoint_part part, FILE *stream) {
     MEMORY_BOUNDARY(STATUS_MEMORY);
     struct checkpoint all;
     TRY(checkpoint_read(arena, &all, path));
-    if (case_only) {
+    if (part == CHECKPOINT_CASE) {
         fputs(all.effective, stream);
         return STATUS_OK;
     }
@@ -214,11 +214,12 @@ enum status checkpoint_info(struct arena *arena, const char *path, bool case_onl
             all.result, all.rows.n_rows);
     fprintf(stream, "made by    %s\n           %s\non         %s\n", all.program, all.libraries, all.processor);
     if (*all.places) fprintf(stream, "places     --checkpoint-at %s\n", all.places);
-    fprintf(stream, "so far     %ld steps, %ld residuals, %ld Jacobians in %.4g s\n\n", all.totals.steps,
+    fprintf(stream, "so far     %ld steps, %ld residuals, %ld Jacobians in %.4g s\n", all.totals.steps,
             all.totals.residual_evaluations, all.totals.jacobian_evaluations, all.wall_time);
+    if (part != CHECKPOINT_STATE) return STATUS_OK;
 
     // the state
-    fprintf(stream, "  %-24s %10s  %s\n", "state", "values", "checksum");
+    fprintf(stream, "\n  %-24s %10s  %s\n", "state", "values", "checksum");
     for (int i = 0; i < state_table_n; i++) {
         const struct state_row *const row = &state_table[i];
         if (row->type == STATE_UNKEPT) continue;

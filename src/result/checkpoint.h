@@ -48,8 +48,9 @@ enum status checkpoint_set_state(const struct checkpoint *checkpoint, struct sta
  * scratch. */
 enum status checkpoint_check_target(struct arena *arena, const char *path, const char *result);
 
-/* Print a summary of a checkpoint, or only the case in the checkpoint. arena: for scratch. A boundary, for the caller
- * to close the stream. Fails as checkpoint_read. */
-enum status checkpoint_info(struct arena *arena, const char *path, bool case_only, FILE *stream);
+/* Print a summary of a checkpoint in five lines, this and a line for each variable of the state, or only the case in
+ * the checkpoint. arena: for scratch. A boundary, for the caller to close the stream. Fails as checkpoint_read. */
+enum checkpoint_part { CHECKPOINT_SUMMARY, CHECKPOINT_STATE, CHECKPOINT_CASE };
+enum status checkpoint_info(struct arena *arena, const char *path, enum checkpoint_part part, FILE *stream);
 
 #endif

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/parallel.h"
 #include "base/text.h"
 #include "case/case.h"
 #include "result/durable.h"
@@ -26,6 +27,8 @@ enum status checkpoints_create(struct arena *arena, struct checkpoints *checkpoi
                                const char *result, const char *at) {
     *checkpoints = (struct checkpoints){.arena = arena, .places = "", .last = -1, .last_place = -1};
     checkpoints->interval = lround(values->time.checkpoint_interval / values->school.shedding_interval);
+    checkpoints->wall = values->time.checkpoint_wall;
+    checkpoints->written = clock_seconds(CLOCK_MONOTONIC);
     checkpoints->path = checkpoints_path(arena, result);
     checkpoints->previous = arena_text(arena, "%s" CHECKPOINTS_PREVIOUS, checkpoints->path);
     const char *const slash = strrchr(result, '/');
@@ -86,28 +89,60 @@ bool checkpoints_are_due(const struct checkpoints *checkpoints, long event) {
     return is_due;
 }
 
+bool checkpoints_are_due_by_wall(const struct checkpoints *checkpoints) {
+    return checkpoints->wall > 0 && clock_seconds(CLOCK_MONOTONIC) - checkpoints->written >= checkpoints->wall;
+}
+
+void checkpoints_end(const struct checkpoints *checkpoints) {
+    const bool is_planned = checkpoints->interval > 0 || checkpoints->n_at > 0;
+    if (checkpoints->is_by_wall && !is_planned) checkpoints_remove(checkpoints);
+}
+
 // ---- writing
 
-enum status checkpoints_write(struct checkpoints *checkpoints, const struct simulation *simulation,
-                              const struct record *record) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
-    const long event = simulation->state->event;
-    if (event == checkpoints->last) return STATUS_OK;
-    if (!checkpoint_is_regular(checkpoints, event) && event != checkpoints->last_place) {
-        checkpoints->places = arena_text(checkpoints->arena, "%s%s%.10g", checkpoints->places,
-                                         *checkpoints->places ? "," : "", simulation->state->t);
-        checkpoints->last_place = event;
-        result_file_note(record->file, RESULT_CHECKPOINT_AT, checkpoints->places);
+// the places of further checkpoints with the present one
+static const char *checkpoint_places(const struct checkpoints *checkpoints, const struct state *state) {
+    if (checkpoint_is_regular(checkpoints, state->event) || state->event == checkpoints->last_place) {
+        return checkpoints->places;
     }
+    return arena_text(checkpoints->arena, "%s%s%.10g", checkpoints->places, *checkpoints->places ? "," : "", state->t);
+}
 
+static enum status checkpoint_put(struct checkpoints *checkpoints, const struct simulation *simulation,
+                                  const struct record *record, const char *places) {
     struct checkpoint marked = {.effective = checkpoints->effective,
                                 .result = checkpoints->result,
-                                .places = checkpoints->places,
+                                .places = places,
                                 .totals = simulation->totals,
                                 .wall_time = simulate_wall_time(simulation)};
     TRY(result_file_mark(record->file, &marked.rows));
     TRY(checkpoint_write(checkpoints->arena, checkpoints->path, checkpoints->previous, &marked, simulation->state,
                          simulation->school));
-    checkpoints->last = event;
+    checkpoints->last = simulation->state->event;
+    checkpoints->written = clock_seconds(CLOCK_MONOTONIC);
     return STATUS_OK;
+}
+
+enum status checkpoints_write(struct checkpoints *checkpoints, const struct simulation *simulation,
+                              const struct record *record) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    const struct state *const state = simulation->state;
+
+    // the checkpoint of the wall time at this event lacks nothing but the note
+    const char *const places = checkpoint_places(checkpoints, state);
+    if (places != checkpoints->places) {
+        checkpoints->places = places;
+        checkpoints->last_place = state->event;
+        result_file_note(record->file, RESULT_CHECKPOINT_AT, checkpoints->places);
+    }
+    if (state->event == checkpoints->last && !checkpoints->is_by_wall) return STATUS_OK;
+    checkpoints->is_by_wall = false;
+    return checkpoint_put(checkpoints, simulation, record, checkpoints->places);
+}
+
+enum status checkpoints_write_by_wall(struct checkpoints *checkpoints, const struct simulation *simulation,
+                                      const struct record *record) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    checkpoints->is_by_wall = true;
+    return checkpoint_put(checkpoints, simulation, record, checkpoint_places(checkpoints, simulation->state));
 }

@@ -2,8 +2,11 @@
  * checkpoint of a RESULT without this ending is RESULT.checkpoint; the previous checkpoint has the ending .previous in
  * addition. Tested by tests/run/test_checkpoints.c and tests/run/test_resume.sh.
  *
- * Every run renews the simulation (simulate_renew) at each checkpoint before the end of the run, resumed or not. A
- * resumed run therefore has the bits of the uninterrupted run. */
+ * A checkpoint is planned, by time.checkpoint_interval and --checkpoint-at, or is written because the run is stopped,
+ * or because time.checkpoint_wall has passed. Every run renews the simulation (simulate_renew) at each planned
+ * checkpoint before its end, resumed or not, so a resumed run has the bits of the uninterrupted run. At the others
+ * only a resumed run begins anew: its attribute checkpoint_at names the place, and a run with this --checkpoint-at
+ * has the same bits. The wall time therefore never changes a bit of a run that is not interrupted. */
 #ifndef CHECKPOINTS_H
 #define CHECKPOINTS_H
 
@@ -28,6 +31,9 @@ struct checkpoints {
     const char *places; /* times of the further checkpoints so far, as in --checkpoint-at */
     long last_place;    /* event of the last further checkpoint; -1: none yet */
     long last;          /* event of the last checkpoint; -1: none yet */
+    double wall;        /* wall time between two checkpoints, s; 0: none */
+    double written;     /* monotonic time of the last checkpoint, or of the start of the run, s */
+    bool is_by_wall;    /* the last checkpoint was written because its wall time had come */
 };
 
 /* The ending of the previous checkpoint, and the path of the checkpoint of a result. */
@@ -48,12 +54,21 @@ void checkpoints_resume(struct checkpoints *checkpoints, const struct checkpoint
 /* Remove the files of an earlier run. */
 void checkpoints_remove(const struct checkpoints *checkpoints);
 
-/* Whether there is a checkpoint at this event. */
+/* Whether a checkpoint is planned at this event; whether the wall time of a further one has come. */
 bool checkpoints_are_due(const struct checkpoints *checkpoints, long event);
+bool checkpoints_are_due_by_wall(const struct checkpoints *checkpoints);
 
 /* Write a checkpoint at the event of the simulation, after the rows of the record are safe on disk; no-op if the event
  * has a checkpoint. Fails with STATUS_FILE or, as a boundary, with STATUS_MEMORY. */
 enum status checkpoints_write(struct checkpoints *checkpoints, const struct simulation *simulation,
                               const struct record *record);
+
+/* The same for a checkpoint whose wall time has come: the place is noted in the checkpoint, and not in the result. */
+enum status checkpoints_write_by_wall(struct checkpoints *checkpoints, const struct simulation *simulation,
+                                      const struct record *record);
+
+/* The run has reached its end, and its result is complete: remove the checkpoints of its wall time, unless others were
+ * planned. */
+void checkpoints_end(const struct checkpoints *checkpoints);
 
 #endif

@@ -2,6 +2,7 @@
  * is resumed. */
 #include "run/simulate_run.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -45,9 +46,13 @@ static enum status run_write_if_due(struct run *run) {
 
 static enum status run_checkpoint_if_due(struct run *run) {
     struct simulation *const simulation = run->simulation;
-    if (!checkpoints_are_due(&run->checkpoints, simulation->state->event)) return STATUS_OK;
-    TRY(checkpoints_write(&run->checkpoints, simulation, &run->record));
-    return simulation->state->event < simulation->n_events ? simulate_renew(simulation) : STATUS_OK;
+    const bool is_end = simulation->state->event >= simulation->n_events;
+    if (checkpoints_are_due(&run->checkpoints, simulation->state->event)) {
+        TRY(checkpoints_write(&run->checkpoints, simulation, &run->record));
+        return is_end ? STATUS_OK : simulate_renew(simulation);
+    }
+    if (is_end || !checkpoints_are_due_by_wall(&run->checkpoints)) return STATUS_OK;
+    return checkpoints_write_by_wall(&run->checkpoints, simulation, &run->record);
 }
 
 static void run_report(const struct run *run, double t) {
@@ -114,7 +119,9 @@ static enum status run_finish(struct run *run, enum status status) {
     if (status != STATUS_STOPPED && run->simulation->residual) {
         record_notes_write(run->record.file, run->simulation, "", run->options->warn, run->options->data);
     }
-    return record_close(&run->record, status);
+    TRY(record_close(&run->record, status));
+    checkpoints_end(&run->checkpoints);
+    return STATUS_OK;
 }
 
 // ---- a new run
@@ -227,6 +234,40 @@ static enum status resume_try(struct resume *resume, const char *path) {
                              &resume->is_complete);
 }
 
+/* Say why a result without checkpoint cannot be resumed, and what to do. Fails with STATUS_FILE. */
+static enum status resume_refuse(struct arena *arena, const char *result, const char *checkpoint) {
+    struct netcdf_reader *reader;
+    char *run_status, *history;
+    NEW(arena, reader, 1);
+    TRY(netcdf_open(arena, reader, result));
+    TRY(netcdf_attribute(reader, "run_status", &run_status));
+    TRY(netcdf_attribute(reader, "history", &history));
+    if (strcmp(run_status, "complete") == 0) {
+        return status_fail(STATUS_FILE,
+                           "%s is complete, and has no checkpoint to go on from: run it again with a later time.end",
+                           result);
+    }
+
+    double t = 0;
+    const struct netcdf_slice last[] = {{"time", reader->n_rows - 1, 1}, {NULL}};
+    if (reader->n_rows > 0) TRY(netcdf_read_doubles(reader, "time", last, &t));
+    const char *const command = strchr(history, ' ');
+    return status_fail(STATUS_FILE,
+                       "%s has rows up to t = %.10g s, but no checkpoint (%s) to continue from: start again with '%s', "
+                       "and --force",
+                       result, t, checkpoint, command ? command + 1 : history);
+}
+
+/* The checkpoint at path, or that of the result at path. */
+static enum status resume_find(struct arena *arena, const char *path, const char **checkpoint) {
+    *checkpoint = path;
+    if (!target_is(path, TARGET_NETCDF)) return STATUS_OK;
+    *checkpoint = checkpoints_path(arena, path);
+    const char *const previous = arena_text(arena, "%s" CHECKPOINTS_PREVIOUS, *checkpoint);
+    if (access(*checkpoint, F_OK) == 0 || access(previous, F_OK) == 0) return STATUS_OK;
+    return resume_refuse(arena, path, *checkpoint);
+}
+
 /* Open the checkpoint at path or, if this checkpoint cannot be used, the previous checkpoint, and claim the result.
  * Fails with STATUS_FILE and the reason. */
 static enum status resume_open(struct resume *resume, const char *path) {
@@ -299,7 +340,6 @@ static enum status resume_extend(struct resume *resume, struct result_origin *or
     origin->overwrite = true;
     origin->source = &source;
     TRY(record_create(run->arena, &run->record, origin));
-    result_file_note(run->record.file, RESULT_CHECKPOINT_AT, resume->checkpoint.places);
 
     // in this order one of the last two checkpoints always matches the result
     TRY(checkpoints_write(&run->checkpoints, simulation, &run->record));
@@ -311,11 +351,18 @@ static enum status resume_start(struct resume *resume, const char *path, const s
     struct run *const run = &resume->run;
     const struct simulate_options *const options = run->options;
     run->arena = arena_create(NULL, "a run");
-    TRY(resume_open(resume, path));
+    const char *checkpoint;
+    TRY(resume_find(run->arena, path, &checkpoint));
+    TRY(resume_open(resume, checkpoint));
 
-    // tell the user of a damaged checkpoint and of another processor
-    char here[VERSION_LENGTH], line[4 * VERSION_LENGTH];
+    // tell the user what the result has, of a damaged checkpoint, and of another processor
+    char here[VERSION_LENGTH], line[4 * VERSION_LENGTH + PATH_MAX];
     version_processor(here);
+    if (options->note && checkpoint != path) {
+        snprintf(line, sizeof line, "%s continues from t = %.10g s, %.3g s of wall time after its start (%s)", path,
+                 resume->checkpoint.t, resume->checkpoint.wall_time, checkpoint);
+        options->note(line, options->data);
+    }
     if (options->warn && resume->note) options->warn(resume->note, options->data);
     if (options->note && strcmp(here, resume->checkpoint.processor) != 0) {
         snprintf(line, sizeof line,
@@ -354,6 +401,9 @@ static enum status resume_start(struct resume *resume, const char *path, const s
     }
     const enum status status =
         changes->has_other_end ? resume_extend(resume, &origin) : record_create(run->arena, &run->record, &origin);
+
+    // the simulation begins anew here
+    if (run->record.file) result_file_note(run->record.file, RESULT_CHECKPOINT_AT, resume->checkpoint.places);
     return run->record.file ? run_finish(run, status) : status;
 }
 

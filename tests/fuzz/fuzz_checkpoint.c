@@ -69,7 +69,7 @@ static void read_state(const struct checkpoint *checkpoint) {
 static void try(const uint8_t *bytes, size_t n) {
     fuzz_write(bytes, n);
     struct arena *const arena = arena_create(NULL, "a test");
-    fuzz_demand_refusal(checkpoint_info(arena, fuzz_path, false, fuzz_nowhere()));
+    fuzz_demand_refusal(checkpoint_info(arena, fuzz_path, CHECKPOINT_STATE, fuzz_nowhere()));
     struct checkpoint checkpoint;
     const enum status status = checkpoint_read(arena, &checkpoint, fuzz_path);
     fuzz_demand_refusal(status);

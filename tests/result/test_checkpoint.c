@@ -111,7 +111,7 @@ TEST(info_sums_up_the_run) {
     char *text = NULL;
     size_t size = 0;
     FILE *const stream = open_memstream(&text, &size);
-    school_ok(checkpoint_info(arena, path, false, stream));
+    school_ok(checkpoint_info(arena, path, CHECKPOINT_STATE, stream));
     fclose(stream);
     assert_non_null(strstr(text, ": a run at t = 0.6 s; the result is run.nc, with 12 rows up to this time\n"));
     assert_non_null(strstr(text, "\nplaces     --checkpoint-at 0.3,1.25\n"));

@@ -111,7 +111,8 @@ run run small.yaml -q -o placed.nc --set time.checkpoint_interval=0 --set time.e
 run resume placed.ckpt -q --end 0.12
 check a_place_is_noted_once test "$(places placed.nc)" = 0.04
 refused no_checkpoint 4 'nothing.ckpt: cannot be read' resume nothing.ckpt
-refused a_result 4 'run.nc: cannot be used: not a checkpoint of shoal' resume run.nc
+refused a_case_file 4 'small.yaml: cannot be used: not a checkpoint of shoal' resume small.yaml
+refused a_complete_result 2 'run.nc is complete: give a later --end to extend the result' resume run.nc
 refused no_event 2 "--checkpoint-at: '0.333' is not the time of an event" run small.yaml --checkpoint-at 0.3,0.333
 refused no_time 2 '--max-wall 5: expects HH:MM:SS' run small.yaml --max-wall 5
 printf '%s\n' '#include <stdio.h>' 'unsigned alarm(unsigned n) { fprintf(stderr, "alarm %u", n); return 0; }' >alarm.c
@@ -123,7 +124,7 @@ else
 fi
 refused no_multiple 2 'time.checkpoint_interval: 0.015 s is not an integer multiple' check small.yaml \
     --set time.checkpoint_interval=0.015
-run info run.ckpt
+run info -v run.ckpt
 check info_tells_of_a_checkpoint eval 'has out "a run at t = 1 s; the result is run.nc" && has out balance.power'
 run info --case run.ckpt
 cp out case.yaml
@@ -212,6 +213,45 @@ run run "${regular[@]}" -q -o run.nc --set time.checkpoint_interval=0 --force
 check a_new_run_removes_old_checkpoints test "$code" = 0 -a ! -e run.ckpt -a ! -e run.ckpt.previous
 echo mine >run.ckpt
 refused a_file_of_another_program 4 'run.ckpt exists and is no checkpoint of shoal' run "${regular[@]}" -q -o run.nc --force
+
+# ---- killed between checkpoints of the wall time, and resumed by the name of the result
+
+rm -f ./*.nc ./*.ckpt*
+wall=(small.yaml --set time.end=3 --set time.checkpoint_wall=1e-3 --set output.wake_interval=1)
+run run "${wall[@]}" -q -o walls.nc
+check wall_time_leaves_no_checkpoint_at_the_end test "$code" = 0 -a ! -e walls.ckpt -a ! -e walls.ckpt.previous
+run run "${wall[@]}" -q -o none.nc --set time.checkpoint_wall=0
+check wall_time_changes_no_bit same walls.nc none.nc
+check and_no_place_is_noted test -z "$(places walls.nc)"
+for ((try = 0; try < 20; try++)); do
+    start run "${wall[@]}" -o run.nc
+    wait_for eval '[[ -s run.ckpt ]] || ! kill -0 "$pid"'
+    end KILL
+    [[ -s run.ckpt ]] && break
+    rm -f run.*
+done
+cp run.ckpt kept.ckpt
+cp run.nc kept.nc
+run info run.ckpt
+check a_checkpoint_has_five_lines test "$(grep -cv '^places' out)" = 5
+run info run.ckpt -v
+check and_the_state_with_v grep -q '^  wake.circulation ' out
+run resume run.nc
+check the_result_is_resumed_by_its_name test "$code" = 0
+check and_says_what_it_has grep -qE 'run.nc continues from t = [0-9.]+ s, .* of wall time after its start .run.ckpt.' err
+check a_resumed_run_removes_its_checkpoints test ! -e run.ckpt -o -n "$(find . -name run.ckpt -newer kept.nc)"
+at=$(places run.nc)
+check the_place_is_noted test -n "$at"
+run run "${wall[@]}" -q -o placed.nc --checkpoint-at "$at"
+check a_run_with_this_place_has_the_same_bits same run.nc placed.nc
+run resume placed.nc --end 3.1 -q
+check a_complete_run_is_extended_by_its_name test "$code" = 0
+refused a_complete_run_without_checkpoint 4 'walls.nc is complete, and has no checkpoint to go on from: run it again' \
+    resume walls.nc --end 4
+cp kept.nc lonely.nc
+refused a_killed_run_without_checkpoint 4 "s, but no checkpoint (lonely.ckpt) to continue from: start again with '$program run small.yaml" \
+    resume lonely.nc
+rm -f ./*.nc ./*.ckpt*
 
 # ---- one run at a time, signals that are ignored, and a signal within a long event
 
