@@ -1,4 +1,4 @@
-/* sundials.c: vectors of SUNDIALS, serial ones or those of OpenMP, with norms, sums and clones of our own.
+/* sundials.c: vectors of SUNDIALS, serial ones or those of OpenMP, with norms and sums of our own.
  *
  * A school of 64 fish takes 3.53 s of CPU on two threads with the vectors of OpenMP, and 3.55 s with vectors of our
  * own; a school of 256 fish 3.43 s and 3.44 s. */
@@ -10,23 +10,10 @@
 #include "base/parallel.h"
 #include "base/wide.h"
 
-/* The content of a vector begins with the content that the operations of the library expect. */
-struct content {
-    union {
-        struct _N_VectorContent_Serial serial;
-        struct _N_VectorContent_OpenMP shared;
-    } library;
-    struct sundials_context *context;
-};
-
-static struct sundials_context *context_of(N_Vector vector) {
-    return ((const struct content *)vector->content)->context;
-}
-
 // in the order of the values, whatever the number of threads
 static double norm(N_Vector x, N_Vector weight) {
     const double *const value = N_VGetArrayPointer(x), *const w = N_VGetArrayPointer(weight);
-    const int n = context_of(x)->n;
+    const int n = (int)N_VGetLength(x);
     double sum = 0;
     for (int i = 0; i < n; i++) {
         const double weighted = value[i] * w[i];
@@ -39,7 +26,7 @@ static double norm(N_Vector x, N_Vector weight) {
 static double masked_norm(N_Vector x, N_Vector weight, N_Vector mask) {
     const double *const value = N_VGetArrayPointer(x), *const w = N_VGetArrayPointer(weight);
     const double *const kind = N_VGetArrayPointer(mask);
-    const int n = context_of(x)->n;
+    const int n = (int)N_VGetLength(x);
     double sum = 0;
     for (int i = 0; i < n; i++) {
         const double weighted = value[i] * w[i];
@@ -60,7 +47,7 @@ static void linear_sum(double a, N_Vector x, double b, N_Vector y, N_Vector z) {
         N_VLinearSum_Serial(a, x, b, y, z);
         return;
     }
-    add_products(context_of(z)->n, a, N_VGetArrayPointer(x), b, N_VGetArrayPointer(y), N_VGetArrayPointer(z));
+    add_products((int)N_VGetLength(z), a, N_VGetArrayPointer(x), b, N_VGetArrayPointer(y), N_VGetArrayPointer(z));
 }
 
 static WIDE(void, multiply, (int n, double a, const double *x, double *z), (n, a, x, z)) {
@@ -68,12 +55,7 @@ static WIDE(void, multiply, (int n, double a, const double *x, double *z), (n, a
 }
 
 static void scale(double a, N_Vector x, N_Vector z) {
-    multiply(context_of(z)->n, a, N_VGetArrayPointer(x), N_VGetArrayPointer(z));
-}
-
-// the arena releases all vectors
-static void keep(N_Vector vector) {
-    (void)vector;
+    multiply((int)N_VGetLength(z), a, N_VGetArrayPointer(x), N_VGetArrayPointer(z));
 }
 
 /* An object and its kind, for the arena. */
@@ -87,13 +69,7 @@ static void release_owned(void *data) {
     void *const object = owned->object;
     switch (owned->kind) {
         case OWNED_CONTEXT: SUNContext_Free(object); return;
-        case OWNED_VECTOR:
-            if (context_of(object)->threads > 1) {
-                N_VDestroy_OpenMP(object);
-            } else {
-                N_VDestroy_Serial(object);
-            }
-            return;
+        case OWNED_VECTOR: N_VDestroy(object); return;
         case OWNED_MATRIX: SUNMatDestroy(object); return;
         case OWNED_LINEAR: SUNLinSolFree(object); return;
         case OWNED_CUSTOM_LINEAR: SUNLinSolFreeEmpty(object); return;
@@ -114,11 +90,6 @@ void *sundials_context_own(struct sundials_context *context, enum sundials_owned
     return object;
 }
 
-static N_Vector clone(N_Vector vector) {
-    struct sundials_context *const context = context_of(vector);
-    return context->n_spare > 0 ? context->spare[--context->n_spare] : sundials_context_vector(context, NULL);
-}
-
 N_Vector sundials_context_vector(struct sundials_context *context, double *values) {
     struct arena *const arena = context->arena;
     if (!values) NEW(arena, values, context->n);
@@ -126,16 +97,6 @@ N_Vector sundials_context_vector(struct sundials_context *context, double *value
         arena_take(arena, context->threads > 1 ? N_VMake_OpenMP(context->n, values, context->threads, context->context)
                                                : N_VMake_Serial(context->n, values, context->context));
 
-    // extend the content of the vector by the context
-    struct content *const content = realloc(vector->content, sizeof *content);
-    if (!content) {
-        N_VDestroy(vector);
-        arena_lack(arena, sizeof *content);
-    }
-    content->context = context;
-    vector->content = content;
-    vector->ops->nvclone = clone;
-    vector->ops->nvdestroy = keep;
     if (context->threads == 1) {
         vector->ops->nvlinearsum = linear_sum;
         vector->ops->nvscale = scale;
@@ -145,9 +106,12 @@ N_Vector sundials_context_vector(struct sundials_context *context, double *value
     return sundials_context_own(context, OWNED_VECTOR, vector);
 }
 
-void sundials_context_reserve(struct sundials_context *context, int n) {
-    GROW(context->arena, context->spare, n);
-    while (context->n_spare < n) context->spare[context->n_spare++] = sundials_context_vector(context, NULL);
+void sundials_context_reserve(const struct sundials_context *context, int n) {
+    // the vectors, and room for the small arrays of a package
+    enum { STRUCTS = 2048, SMALL = 1 << 17 };
+    void *volatile const needed = malloc((size_t)n * ((size_t)context->n * sizeof(double) + STRUCTS) + SMALL);
+    free(needed);
+    if (!needed) arena_lack(context->arena, 0);
 }
 
 void sundials_context_create(struct sundials_context *context, struct arena *arena, int n, int threads,
