@@ -5,6 +5,7 @@
 #include "solver/sundials.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 
 #include "base/parallel.h"
@@ -114,6 +115,23 @@ void sundials_context_reserve(const struct sundials_context *context, int n) {
     if (!needed) arena_lack(context->arena, 0);
 }
 
+/* The log of SUNDIALS, if an environment variable of SUNDIALS names a file for it, else NULL. The process has one: each
+ * logger empties the files that it opens. */
+static SUNLogger environment_logger(void) {
+    static const char *const names[] = {"SUNLOGGER_ERROR_FILENAME", "SUNLOGGER_WARNING_FILENAME",
+                                        "SUNLOGGER_INFO_FILENAME", "SUNLOGGER_DEBUG_FILENAME"};
+    static SUNLogger logger;
+    static bool is_known;
+#pragma omp critical(environment_logger)
+    {
+        bool is_wanted = false;
+        for (size_t i = 0; i < sizeof names / sizeof *names; i++) is_wanted |= getenv(names[i]) != NULL;
+        if (is_wanted && !is_known && SUNLogger_CreateFromEnv(SUN_COMM_NULL, &logger) != SUN_SUCCESS) logger = NULL;
+        is_known = true;
+    }
+    return logger;
+}
+
 void sundials_context_create(struct sundials_context *context, struct arena *arena, int n, int threads,
                              enum status *failure) {
     *context = (struct sundials_context){.arena = arena_create(arena, "vectors of SUNDIALS"),
@@ -123,9 +141,10 @@ void sundials_context_create(struct sundials_context *context, struct arena *are
     NEW(context->arena, context->next, 1);
     if (SUNContext_Create(SUN_COMM_NULL, &context->context) != SUN_SUCCESS) arena_lack(arena, 0);
     sundials_context_own(context, OWNED_CONTEXT, &context->context);
-    // no logger, because a logger prints warnings
-    if (SUNContext_SetLogger(context->context, NULL) != SUN_SUCCESS ||
-        SUNContext_ClearErrHandlers(context->context) != SUN_SUCCESS ||
+    // without a log, neither a logger nor the handler for it, because both print
+    SUNLogger const logger = environment_logger();
+    if (SUNContext_SetLogger(context->context, logger) != SUN_SUCCESS ||
+        (!logger && SUNContext_ClearErrHandlers(context->context) != SUN_SUCCESS) ||
         SUNContext_PushErrHandler(context->context, sundials_context_message, failure) != SUN_SUCCESS) {
         arena_lack(arena, 0);
     }
