@@ -122,7 +122,7 @@ static SUNLogger environment_logger(void) {
                                         "SUNLOGGER_INFO_FILENAME", "SUNLOGGER_DEBUG_FILENAME"};
     static SUNLogger logger;
     static bool is_known;
-#pragma omp critical(environment_logger)
+#pragma omp critical
     {
         bool is_wanted = false;
         for (size_t i = 0; i < sizeof names / sizeof *names; i++) is_wanted |= getenv(names[i]) != NULL;

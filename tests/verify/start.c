@@ -341,7 +341,6 @@ static int jacobian_callback(sunrealtype t, sunrealtype cj, N_Vector y, N_Vector
 static int calculate(struct simulation *simulation, double *y, double *yp, double *kind, double *tolerance) {
     const int n = simulation->school->n_unknowns;
     struct correction correction = {.simulation = simulation};
-    const struct linear_tolerance linear_tolerance = {.relative = 1e-10};
     double *const values[4] = {y, yp, kind, tolerance};
     struct sundials_context context;
     N_Vector vector[4];
@@ -349,7 +348,7 @@ static int calculate(struct simulation *simulation, double *y, double *yp, doubl
     sundials_context_create(&context, arena, n, 1, &correction.failure);
     for (int i = 0; i < 4; i++) vector[i] = sundials_context_vector(&context, values[i]);
     correction.jacobian = jacobian_create(arena, simulation->school);
-    correction.linear = linear_sundials_create(&context, correction.jacobian, tolerance, linear_tolerance);
+    correction.linear = linear_sundials_create(&context, correction.jacobian, 1e-10);
     residual_mask(simulation->residual, correction.jacobian);
     void *ida = IDACreate(context.context);
     int code = IDAInit(ida, value_callback, simulation->state->t, vector[0], vector[1]);
