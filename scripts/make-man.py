@@ -67,14 +67,6 @@ def program_page(page, about):
         lines += [".TP", bold(code), text(meaning)]
     lines += [".SH ENVIRONMENT", ".TP", bold("OMP_WAIT_POLICY, GOMP_SPINCOUNT")]
     lines += [text("these variables take precedence over the program's choice of waiting threads")]
-    lines += [".TP", bold("SUNLOGGER_ERROR_FILENAME, SUNLOGGER_WARNING_FILENAME, SUNLOGGER_INFO_FILENAME, "
-                          "SUNLOGGER_DEBUG_FILENAME")]
-    lines += [
-        text(
-            "files for the log of SUNDIALS, or stdout or stderr; a log holds what SUNDIALS was built for "
-            "(SUNDIALS_LOGGING_LEVEL)"
-        )
-    ]
     lines += [".SH EXAMPLES", ".EX"]
     lines += [
         text(line)

@@ -12,8 +12,6 @@
 #include "school/residual.h"
 #include "state/state.h"
 
-__attribute__((weak)) const bool school_small;
-
 void school_ok(enum status status) {
     if (status == STATUS_OK) return;
     print_error("%s\n", status_message());
@@ -23,11 +21,7 @@ void school_ok(enum status status) {
 struct case_values school_values(const char *text) {
     struct case_values values;
     char whole[32768];
-    // a preset is weaker than an include
-    const char *const include = !school_small || strstr(text, "preset:") || strstr(text, SCHOOL_DEFAULTS)
-                                    ? ""
-                                    : "include: [tests/data/small.yaml]\n";
-    const int length = snprintf(whole, sizeof whole, "format: 1\nname: test\n%s%s", include, text);
+    const int length = snprintf(whole, sizeof whole, "format: 1\nname: test\n%s", text);
     assert_in_range(length, 0, sizeof whole - 1);
     school_ok(case_parse(&values, whole, (size_t)length, "test", ".", 0, NULL));
     arena_move(values.arena, test_arena());

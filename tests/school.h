@@ -26,15 +26,9 @@ struct setup {
     uint64_t seed;                    /* of the random numbers */
 };
 
-/* A text with this line has the defaults of the program, with a thicker body. */
-#define SCHOOL_DEFAULTS "include: [tests/data/thick.yaml]\n"
-
-/* True in a test program whose texts do not say everything yet. */
-extern const bool school_small;
-
-/* "format: 1", a name and, if school_small, without SCHOOL_DEFAULTS or a preset, the defaults of the article's model (a
- * small fish: tests/data/small.yaml) go before the text. Fails the test with the message of an error. Values and a
- * school live until the end of the test, a school also until school_clear. */
+/* "format: 1" and a name go before the text; what the text leaves out is the default of the program. Fails the test
+ * with the message of an error. Values and a school live until the end of the test, a school also until
+ * school_clear. */
 struct case_values school_values(const char *text);
 void school_build(struct setup *setup, const char *text);
 struct setup setup_of(const char *text);      /* the same */

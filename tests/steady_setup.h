@@ -6,7 +6,7 @@
 #include "steady/steady_problem.h"
 
 // coarse, so that a beat takes some milliseconds: 20 events, 7 nodes, 13 points of the sheet
-#define COARSE SCHOOL_DEFAULTS "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"
+#define COARSE "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"
 #define FISH "nodes: 7, sheet_points: 13, force: reactive"
 
 struct steady_setup {

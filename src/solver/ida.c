@@ -21,14 +21,9 @@ static const double newton_coefficient = 0.003;
 static const double cj_change = 0.1;
 static const int jacobian_cost = 5, max_iterations = 6, max_with_new = 20;
 
-/* Tolerances of the linear solver, as fractions of the right-hand side and of the tolerance of Newton's iteration
- * (IDASetEpsLin): smaller tolerances save no iteration. Measured: doc/numerics.md. */
+/* Tolerances of the linear solver, as fractions of the right-hand side and of the tolerance of Newton's iteration:
+ * smaller tolerances save no iteration. Measured: doc/numerics.md. */
 static const double linear_relative = 1e-4, linear_absolute = 0.1;
-
-/* IDA can scale the solution of an old Jacobian by 2/(1 + ratio of the leading coefficients). Within the limit above
- * that is at most 5 % of a correction, and it saves nothing: four fish take 639 iterations with it and 640 without,
- * cases/swim.yaml with error_test: all 3737 and 3638 in 3 s. */
-static const sunbooleantype scale_solutions = SUNFALSE;
 
 /* Keep a step size that IDA would change by a factor between these bounds, because a changed step costs a Jacobian. IDA
  * cuts every step that its estimate asks to reduce, however little, and then doubles it. Measured: doc/numerics.md. */
@@ -68,7 +63,7 @@ struct ida {
     int newton_code;
     struct trace_attempt attempt;
     double jacobian_cj; /* leading coefficient of the Jacobian */
-    long gmres;         /* iterations since the last restart up to the last attempt */
+    long gmres;         /* iterations up to the last attempt */
 };
 
 static int residual_callback(sunrealtype t, N_Vector y, N_Vector yp, N_Vector value, void *data) {
@@ -145,8 +140,7 @@ static struct trace_attempt *next_attempt(void *data) {
 
 static void keep_attempt(void *data, int code) {
     struct ida *const solver = data;
-    long gmres = 0;
-    IDAGetNumLinIters(solver->ida, &gmres);
+    const long gmres = linear_count(solver->linear.linear).iterations;
     solver->attempt.event = solver->state->event + 1;
     solver->attempt.cj_ratio = leading_coefficient(solver) / solver->jacobian_cj;
     solver->attempt.gmres = gmres - solver->gmres;
@@ -206,7 +200,8 @@ static enum status ida_create(struct arena *arena, void **created, struct residu
     solver->kinds = sundials_context_vector(&solver->context, solver->kind);
     for (int i = 0; i < 2; i++) solver->scratch[i] = sundials_context_vector(&solver->context, NULL);
     sundials_context_reserve(&solver->context, N_CLONES);
-    solver->linear = linear_sundials_create(&solver->context, solver->jacobian, linear_relative);
+    const struct linear_tolerance linear = {linear_relative, linear_absolute * newton_coefficient};
+    solver->linear = linear_sundials_create(&solver->context, solver->jacobian, solver->tolerance, linear);
     const struct ida_newton_rules rules = {.max_iterations = max_iterations,
                                            .max_with_new = max_with_new,
                                            .jacobian_cost = jacobian_cost,
@@ -226,7 +221,6 @@ static enum status ida_create(struct arena *arena, void **created, struct residu
         IDAInit(ida, residual_callback, state->t, solver->y, solver->yp) || IDAWFtolerances(ida, weights_callback) ||
         IDASetId(ida, solver->kinds) || IDASetSuppressAlg(ida, options->error_test == ERROR_TEST_POSITIONS) ||
         IDASetLinearSolver(ida, solver->linear.solver, solver->linear.matrix) || IDASetJacFn(ida, jacobian_callback) ||
-        IDASetEpsLin(ida, linear_absolute) || IDASetLinearSolutionScaling(ida, scale_solutions) ||
         IDASetNonlinearSolver(ida, solver->newton) || IDASetNonlinConvCoef(ida, newton_coefficient) ||
         IDASetMaxOrd(ida, options->order) || IDASetDeltaCjLSetup(ida, cj_change) ||
         IDASetEtaFixedStepBounds(ida, kept_from, kept_to) || IDASetMaxErrTestFails(ida, 20) ||
@@ -262,7 +256,6 @@ static void ida_count(const void *data, struct integrator_counts *counts) {
 static enum status ida_restart(void *data) {
     struct ida *const solver = data;
     ida_count(solver, &solver->before);
-    solver->gmres = 0;
     integrator_rates_begin(solver->algebraic_rates, solver->state);
     if (IDAReInit(solver->ida, solver->state->t, solver->y, solver->yp)) {
         return status_fail(STATUS_SOLVER, "IDA cannot start again: %s", status_message());

@@ -24,9 +24,8 @@ static const double rounded = 1e-12;
  * rounding errors in stiff forces must not prevent convergence. Factor on the scale of accelerations. */
 static const double loose = 1e6;
 
-/* Tolerance of the linear solver, as a fraction of the right-hand side and as KINSOL's forcing term: small, so that
- * each step of Newton's method gains as many digits as with an exact solution. */
-static const double linear_relative = 1e-10;
+/* Small, so that each step of Newton's method gains as many digits as with an exact solution. */
+static const struct linear_tolerance linear_tolerance = {.relative = 1e-10};
 
 struct initial_conditions {
     struct residual *residual;
@@ -97,7 +96,7 @@ enum status initial_conditions_create(struct arena *arena, struct initial_condit
     sundials_context_create(&c->context, arena, n, 1, &c->failure);
     c->solution = sundials_context_vector(&c->context, c->start);
     c->inverse_scales = sundials_context_vector(&c->context, c->inverse_scale);
-    c->linear = linear_sundials_create(&c->context, c->jacobian, linear_relative);
+    c->linear = linear_sundials_create(&c->context, c->jacobian, c->scale, linear_tolerance);
     sundials_context_reserve(&c->context, 12);  // KINSOL clones 5
     c->kinsol = sundials_context_own(&c->context, OWNED_KINSOL, KINCreate(c->context.context));
     // full Newton steps, because the equations are nearly linear, with a new Jacobian in each step
@@ -105,7 +104,6 @@ enum status initial_conditions_create(struct arena *arena, struct initial_condit
         KINInit(c->kinsol, algebraic_value, c->solution) ||
         KINSetLinearSolver(c->kinsol, c->linear.solver, c->linear.matrix) ||
         KINSetJacFn(c->kinsol, algebraic_jacobian) || KINSetMaxSetupCalls(c->kinsol, 1) ||
-        KINSetEtaForm(c->kinsol, KIN_ETACONSTANT) || KINSetEtaConstValue(c->kinsol, linear_relative) ||
         KINSetFuncNormTol(c->kinsol, tolerance) || KINSetScaledStepTol(c->kinsol, 1e-14) ||
         KINSetNumMaxIters(c->kinsol, 50) || KINSetMaxNewtonStep(c->kinsol, 1e30)) {
         return status_fail(STATUS_SOLVER, "KINSOL cannot be set up: %s", status_message());

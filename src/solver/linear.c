@@ -44,20 +44,15 @@ struct whole {
 struct linear {
     struct arena *arena;
     const struct jacobian *jacobian;
-    double relative;     /* tolerance */
+    struct linear_tolerance tolerance;
     struct whole *whole; /* NULL: by blocks */
     struct block *block; /* by blocks                                                                   (n_fish) */
     long solves, iterations;
-    /* the last solution: iterations of GMRES, norm of the residual, and the vector of SUNDIALS */
-    int n_last;
-    double residual_norm;
-    N_Vector last;
-    /* GMRES, created for the first coupled system: solution, right-hand side, weights */
+    /* GMRES, created for the first coupled system: solution, right-hand side, 1/(sqrt(n_unknowns) scale) */
     struct sundials_context context;
     N_Vector x, b, weights;
     SUNLinearSolver gmres;
-    double *weight;           /* of the caller                (n_unknowns) */
-    double *right;            /* values of b                  (n_unknowns) */
+    double *weight, *right;   /* values of weights and b      (n_unknowns) */
     enum status failure;      /* of the product */
     enum status *of_callback; /* of the solver of SUNDIALS: status of the last set-up or solution */
 };
@@ -76,13 +71,16 @@ static struct whole *whole_create(struct arena *arena, const struct school *scho
     return whole;
 }
 
-struct linear *linear_create(struct arena *arena, const struct jacobian *jacobian, double relative) {
+struct linear *linear_create(struct arena *arena, const struct jacobian *jacobian, const double *scale,
+                             struct linear_tolerance tolerance) {
     const struct school *const school = jacobian->school;
     struct linear *linear;
     NEW(arena, linear, 1);
     linear->arena = arena;
     linear->jacobian = jacobian;
-    linear->relative = relative;
+    linear->tolerance = tolerance;
+    NEW(arena, linear->weight, school->n_unknowns);
+    for (int i = 0; i < school->n_unknowns; i++) linear->weight[i] = 1 / (sqrt(school->n_unknowns) * scale[i]);
     if (school->linear == LINEAR_KLU) {
         linear->whole = whole_create(arena, school);
         return linear;
@@ -93,10 +91,6 @@ struct linear *linear_create(struct arena *arena, const struct jacobian *jacobia
         NEW(arena, linear->block[f].update, jacobian->own[f]->n);
     }
     return linear;
-}
-
-void linear_set_weights(struct linear *linear, double *weight) {
-    linear->weight = weight;
 }
 
 // ---- the whole matrix
@@ -336,6 +330,12 @@ static void gmres_create(struct linear *linear) {
     linear->b = sundials_context_vector(&linear->context, linear->right);
     linear->weights = sundials_context_vector(&linear->context, linear->weight);
     sundials_context_reserve(&linear->context, MAX_ITERATIONS + 8);
+
+    // try the memory first: after a failed allocation SUNDIALS frees a part and crashes
+    enum { VECTORS = MAX_ITERATIONS + 8, SMALL = 1 << 17 };
+    void *volatile const needed = malloc((size_t)n * VECTORS * sizeof(double) + SMALL);
+    free(needed);
+    if (!needed) arena_lack(arena, 0);
     linear->gmres =
         arena_take(arena, SUNLinSol_SPGMR(linear->x, SUN_PREC_NONE, MAX_ITERATIONS, linear->context.context));
     arena_defer(arena, release_gmres, linear);
@@ -349,12 +349,10 @@ static void gmres_create(struct linear *linear) {
     }
 }
 
-enum status linear_solve(struct linear *linear, const double *b, double *x, double tolerance) {
+enum status linear_solve(struct linear *linear, const double *b, double *x) {
     const struct jacobian *const jacobian = linear->jacobian;
     const int n = jacobian->school->n_unknowns;
     linear->solves++;
-    linear->n_last = 0;
-    linear->residual_norm = 0;
     if (linear->whole) {
         if (x != b) memcpy(x, b, (size_t)n * sizeof *x);
         whole_solve(linear, x);
@@ -366,19 +364,16 @@ enum status linear_solve(struct linear *linear, const double *b, double *x, doub
     if (!linear->whole && jacobian->n_couplings > 0) {
         if (!linear->gmres) gmres_create(linear);
         N_VSetArrayPointer(x, linear->x);
-        N_VSetArrayPointer(linear->weight, linear->weights);
         const double start = N_VWL2Norm(linear->x, linear->weights);
-        const double limit =
-            jacobian->has_contacts ? contact_relative * start : fmax(linear->relative * start, tolerance);
-        linear->residual_norm = start;
+        const double limit = jacobian->has_contacts
+                                 ? contact_relative * start
+                                 : fmax(linear->tolerance.relative * start, linear->tolerance.absolute);
         if (start > limit && isfinite(start)) {
             memcpy(linear->right, x, (size_t)n * sizeof *x);
             N_VConst(0, linear->x);
             SUNLinSolSetZeroGuess(linear->gmres, SUNTRUE);
             const int code = SUNLinSolSolve(linear->gmres, NULL, linear->x, linear->b, limit);
-            linear->n_last = SUNLinSolNumIters(linear->gmres);
-            linear->residual_norm = SUNLinSolResNorm(linear->gmres);
-            linear->iterations += linear->n_last;
+            linear->iterations += SUNLinSolNumIters(linear->gmres);
             // after too many iterations Newton's iteration judges a solution with a reduced residual
             if (code != SUN_SUCCESS && code != SUNLS_RES_REDUCED) {
                 return status_fail(STATUS_RETRY, "GMRES has found no solution");
@@ -423,15 +418,8 @@ static int matrix_zero(SUNMatrix matrix) {
 }
 
 static SUNLinearSolver_Type solver_type(SUNLinearSolver solver) {
-    const struct linear *const linear = solver->content;
-    const bool is_direct = linear->whole || linear->jacobian->school->n_fish == 1;
-    return is_direct ? SUNLINEARSOLVER_DIRECT : SUNLINEARSOLVER_MATRIX_ITERATIVE;
-}
-
-static int solver_set_weights(SUNLinearSolver solver, N_Vector left, N_Vector right) {
-    (void)right;
-    linear_set_weights(solver->content, N_VGetArrayPointer(left));
-    return SUN_SUCCESS;
+    (void)solver;
+    return SUNLINEARSOLVER_DIRECT;
 }
 
 static int solver_setup(SUNLinearSolver solver, SUNMatrix matrix) {
@@ -441,31 +429,16 @@ static int solver_setup(SUNLinearSolver solver, SUNMatrix matrix) {
     return *linear->of_callback;
 }
 
-// a positive code that IDA does not know would count as success
 static int solver_solve(SUNLinearSolver solver, SUNMatrix matrix, N_Vector x, N_Vector b, sunrealtype tolerance) {
-    (void)matrix;
+    (void)matrix, (void)tolerance;
     struct linear *const linear = solver->content;
-    linear->last = x;
-    *linear->of_callback = linear_solve(linear, N_VGetArrayPointer(b), N_VGetArrayPointer(x), tolerance);
-    return *linear->of_callback == STATUS_OK ? SUN_SUCCESS : SUNLS_CONV_FAIL;
-}
-
-static int solver_iterations(SUNLinearSolver solver) {
-    return ((const struct linear *)solver->content)->n_last;
-}
-
-static sunrealtype solver_residual_norm(SUNLinearSolver solver) {
-    return ((const struct linear *)solver->content)->residual_norm;
-}
-
-// IDA takes the preconditioned residual of the start, zero, for the solution after no iteration: it is D^-1 b, as is x
-static N_Vector solver_residual(SUNLinearSolver solver) {
-    return ((const struct linear *)solver->content)->last;
+    *linear->of_callback = linear_solve(linear, N_VGetArrayPointer(b), N_VGetArrayPointer(x));
+    return *linear->of_callback;
 }
 
 struct linear_sundials linear_sundials_create(struct sundials_context *context, const struct jacobian *jacobian,
-                                              double relative) {
-    struct linear_sundials new = {.linear = linear_create(context->arena, jacobian, relative)};
+                                              const double *scale, struct linear_tolerance tolerance) {
+    struct linear_sundials new = {.linear = linear_create(context->arena, jacobian, scale, tolerance)};
     new.linear->of_callback = context->failure;
     new.matrix = sundials_context_own(context, OWNED_MATRIX, SUNMatNewEmpty(context->context));
     new.solver = sundials_context_own(context, OWNED_CUSTOM_LINEAR, SUNLinSolNewEmpty(context->context));
@@ -473,11 +446,7 @@ struct linear_sundials linear_sundials_create(struct sundials_context *context, 
     new.matrix->ops->zero = matrix_zero;
     new.solver->content = new.linear;
     new.solver->ops->gettype = solver_type;
-    new.solver->ops->setscalingvectors = solver_set_weights;
     new.solver->ops->setup = solver_setup;
     new.solver->ops->solve = solver_solve;
-    new.solver->ops->numiters = solver_iterations;
-    new.solver->ops->resnorm = solver_residual_norm;
-    new.solver->ops->resid = solver_residual;
     return new;
 }

@@ -22,13 +22,16 @@ struct linear_counts {
     long jacobian_non_zeros, factor_non_zeros;
 };
 
-/* Create a solver for a Jacobian, which must outlive it. GMRES converges at this fraction of the initial norm, or at
- * the tolerance of linear_solve. */
-struct linear *linear_create(struct arena *arena, const struct jacobian *jacobian, double relative);
+/* Convergence of GMRES. The norm of the preconditioned residual is the root mean square over all unknowns in units of
+ * their scales, and is close to the error of the solution. */
+struct linear_tolerance {
+    double relative; /* norm as a fraction of the initial norm */
+    double absolute; /* norm; GMRES stops at the larger of both */
+};
 
-/* The weights of the unknowns in the norm of GMRES, the root of the sum of (weight value)^2, which is that of the
- * preconditioned residual and close to that of the error of the solution. Kept, not copied (n_unknowns). */
-void linear_set_weights(struct linear *linear, double *weight);
+/* Create a solver for a Jacobian, which must outlive it; scale (n_unknowns) is copied. */
+struct linear *linear_create(struct arena *arena, const struct jacobian *jacobian, const double *scale,
+                             struct linear_tolerance tolerance);
 
 /* Factorise the diagonal blocks, or the whole matrix, with their present values. A singular matrix fails with
  * STATUS_SOLVER at the first factorisation, later with STATUS_RETRY. */
@@ -40,9 +43,8 @@ enum status linear_setup(struct linear *linear);
  * matrix Woodbury). If that matrix is singular, the solutions are not finite. Requires linear_setup. */
 void linear_update_shed(struct linear *linear, const double *value);
 
-/* Solve J x = b; tolerance: GMRES stops at this norm. Requires linear_setup and linear_set_weights. Both arrays are
- * (n_unknowns) and may be identical. Fails with STATUS_RETRY if x is not finite. */
-enum status linear_solve(struct linear *linear, const double *b, double *x, double tolerance);
+/* Solve J x = b. Both arrays are (n_unknowns) and may be identical. Fails with STATUS_RETRY if x is not finite. */
+enum status linear_solve(struct linear *linear, const double *b, double *x);
 
 struct linear_counts linear_count(const struct linear *linear);
 
@@ -54,11 +56,10 @@ struct linear_sundials {
     SUNLinearSolver solver;
 };
 
-/* Create the solver for a Jacobian, which must outlive it. With several fish by blocks it is a
- * SUNLINEARSOLVER_MATRIX_ITERATIVE: weights and tolerance come from IDA or KINSOL, which also count the iterations of
- * GMRES. A direct one is exact but for rounding. context->failure receives the status of each set-up and each solution.
- * The arena of the context owns the solver. */
+/* Create the solver for a Jacobian; scale and tolerance as in linear_create. The solver declares itself as direct, so
+ * IDA scales the solutions if the step has changed since the evaluation of the Jacobian. context->failure receives the
+ * status of each set-up and each solution. The arena of the context owns the solver; the Jacobian must outlive it. */
 struct linear_sundials linear_sundials_create(struct sundials_context *context, const struct jacobian *jacobian,
-                                              double relative);
+                                              const double *scale, struct linear_tolerance tolerance);
 
 #endif

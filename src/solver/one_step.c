@@ -29,7 +29,7 @@ struct one_step {
     const volatile sig_atomic_t *stop; /* see integrator.h */
     unsigned pattern;                  /* of the residual, when the Jacobian was evaluated */
     double cj;                         /* of the factorised Jacobian; 0: there is none */
-    double *kind, *tolerance, *weight; /* kind, absolute tolerance of each unknown, 1 over it (n_unknowns) */
+    double *kind, *tolerance;          /* kind and absolute tolerance of each unknown     (n_unknowns) */
     double *before, *rates;            /* unknowns and rates at the start of the step     (n_unknowns) */
     double *correction, *right_hand;   /* Newton's                                        (n_unknowns) */
     double *older;                     /* imex: unknowns one step before `before`         (n_unknowns) */
@@ -52,23 +52,22 @@ static enum status one_step_create(struct arena *arena, void **created, struct r
     solver->counts.step_size = options->step;
     solver->counts.order = methods_table[options->method].order;
 
-    double **const arrays[] = {&solver->kind,      &solver->tolerance,  &solver->weight,     &solver->before,
-                               &solver->rates,     &solver->correction, &solver->right_hand, &solver->older,
-                               &solver->forces[0], &solver->forces[1],  &solver->given};
+    double **const arrays[] = {&solver->kind,       &solver->tolerance,  &solver->before, &solver->rates,
+                               &solver->correction, &solver->right_hand, &solver->older,  &solver->forces[0],
+                               &solver->forces[1],  &solver->given};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) NEW(arena, *arrays[i], n);
     residual_kinds(residual, &residual_run, solver->kind);
     for (int i = 0; i < n; i++) {
         // the errors of Newton's iteration in the velocities of a stiff body add up to a spurious momentum
         const double tolerance = options->rtol * residual_scale(residual->school, i);
         solver->tolerance[i] = tolerance * residual_undamped(residual->school, i);
-        solver->weight[i] = 1 / solver->tolerance[i];
     }
     solver->algebraic_rates = integrator_rates_create(arena, residual->school);
     integrator_rates_begin(solver->algebraic_rates, state);
     solver->jacobian = jacobian_create(arena, residual->school);
     residual_mask(residual, solver->jacobian);
-    solver->linear = linear_create(arena, solver->jacobian, linear_relative);
-    linear_set_weights(solver->linear, solver->weight);
+    solver->linear = linear_create(arena, solver->jacobian, solver->tolerance,
+                                   (struct linear_tolerance){.relative = linear_relative});
     *created = solver;
     return STATUS_OK;
 }
@@ -153,7 +152,7 @@ static enum status one_step_iterate(struct one_step *solver, const struct residu
         solver->counts.residual_evaluations++;
         solver->counts.newton_iterations++;
         TRY(residual_evaluate(residual, mode, t, state->y, state->yp, solver->right_hand));
-        TRY(linear_solve(solver->linear, solver->right_hand, solver->correction, 0));
+        TRY(linear_solve(solver->linear, solver->right_hand, solver->correction));
         double size = 0;
         for (int k = 0; k < residual->school->n_unknowns; k++) {
             state->y[k] -= solver->correction[k];

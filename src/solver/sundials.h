@@ -60,6 +60,8 @@ typedef int SUNErrCode;
 #if !__has_include(<nvector/nvector_openmp.h>)
 #define _N_VectorContent_OpenMP _N_VectorContent_Serial
 #define N_VMake_OpenMP(n, values, threads, context) N_VMake_Serial(n, values, context)
+#define N_VClone_OpenMP N_VClone_Serial
+#define N_VDestroy_OpenMP N_VDestroy_Serial
 #endif
 
 #if !SUNDIALS_AT_LEAST(7, 1)
@@ -84,21 +86,23 @@ typedef int SUNErrCode;
 /* The context of one solver, shared by its vectors. The struct must not move while vectors exist. */
 struct sundials_context {
     SUNContext context;
-    struct arena *arena;         /* of the context and its vectors; freed after later objects */
+    struct arena *arena; /* of the context and all vectors, also of clones by SUNDIALS; freed after later objects */
+    N_Vector *spare;     /* vectors for the next clones, so that no clone inside SUNDIALS requests memory */
+    int n_spare;
     struct sundials_owned *next; /* place for the next object */
     int n, threads;              /* of every vector: number of values, threads of an operation */
     enum status *failure;        /* status of the last callback; owned by the caller */
 };
 
 /* Create a context for vectors of n values. Threads share the operations on long vectors; the bits of each value are
- * independent of the number of threads, and norms are sums in the order of the values; clones by SUNDIALS have the same
- * operations. Errors of SUNDIALS go to sundials_context_message with failure. */
+ * independent of the number of threads, and norms are sums in the order of the values. Errors of SUNDIALS go to
+ * sundials_context_message with failure. An object that clones vectors is deferred to the same arena later, and so is
+ * freed before its vectors. */
 void sundials_context_create(struct sundials_context *context, struct arena *arena, int n, int threads,
                              enum status *failure);
 
-/* Make sure that there is memory for n clones, before SUNDIALS makes them: 6.4 does not check each clone, and after a
- * failed one it can free the rest and crash. */
-void sundials_context_reserve(const struct sundials_context *context, int n);
+/* Prepare n clones: a jump out of a function of SUNDIALS would lose the memory of that function. */
+void sundials_context_reserve(struct sundials_context *context, int n);
 
 /* Release an object with the arena of the context, before older objects. object NULL is a lack of memory. Returns the
  * object; the two CUSTOM kinds are empty objects with our operations. */

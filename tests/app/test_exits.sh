@@ -5,9 +5,9 @@
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 
-cat >small.yaml <<'end'
+cat >swimmer.yaml <<'end'
 format: 1
-name: small
+name: swimmer
 time: {end: 0.1, shedding_interval: 0.02, output_interval: 0.02}
 fish: [{force: reactive, nodes: 7, sheet_points: 9}]
 end
@@ -23,28 +23,28 @@ ended() { ((code == $1)); }
 # ---- a limit on CPU time
 
 code=0
-(ulimit -St 1 && exec "$program" run small.yaml -q --set time.end=100000 --set time.output_interval=10) >out 2>err \
+(ulimit -St 1 && exec "$program" run swimmer.yaml -q --set time.end=100000 --set time.output_interval=10) >out 2>err \
     </dev/null || code=$?
 check the_soft_limit_of_CPU_time_stops_a_run ended 75
-check it_says_how_to_go_on has err "continue with 'shoal resume small.ckpt'"
-run info small.ckpt
+check it_says_how_to_go_on has err "continue with 'shoal resume swimmer.ckpt'"
+run info swimmer.ckpt
 check there_is_a_checkpoint ended 0
 
 # ---- a closed pipe for messages ends no command, a closed pipe for output the usual way
 
-sed 's/nodes: 7/nodes: 5/' small.yaml >warned.yaml
+sed 's/nodes: 7/nodes: 5/' swimmer.yaml >warned.yaml
 code=0
 { "$program" check warned.yaml 2> >(exec true) >out; } || code=$?
 check warnings_to_a_closed_pipe_end_no_check ended 0
 check warnings_to_a_closed_pipe_end_no_estimate has out "warned.yaml: ok"
-for command in keys "show small.yaml"; do
+for command in keys "show swimmer.yaml"; do
     code=0
     # shellcheck disable=SC2086 # words
     (sleep 0.3 && exec "$program" $command) > >(exec true) 2>err || code=$?
     check "output to a closed pipe: SIGPIPE ($command)" ended 141
 done
 code=0
-(sleep 0.3 && exec "$program" run small.yaml --force -o piped.nc) > >(exec true) 2>err || code=$?
+(sleep 0.3 && exec "$program" run swimmer.yaml --force -o piped.nc) > >(exec true) 2>err || code=$?
 check the_result_of_a_run_with_a_closed_output_is_there test -s piped.nc
 check a_run_with_a_closed_output_says_so ended 4
 
@@ -101,7 +101,7 @@ fi
 
 odd=$'odd\e[31m\a.nc'
 clean() { ! LC_ALL=C grep -q $'[\e\a\r\x7f]' out err; }
-cp small.yaml $'case\e[31m.yaml'
+cp swimmer.yaml $'case\e[31m.yaml'
 run run $'case\e[31m.yaml' -o "$odd"
 check a_path_is_printed_without_control_characters eval 'ended 0 && clean && has out "odd\\x1b[31m\\x07.nc"'
 for arguments in "info" "view" "export --vtk vtk" "field --grid 3,3" "run" "resume" "steady" "study" "check" "show" "compare"; do
@@ -115,7 +115,7 @@ printf 'format: 1\nname: a\e[31m\n' >raw.yaml
 run check raw.yaml
 check a_line_of_a_case_has_none eval 'ended 2 && clean'
 # the content of a file may be arbitrary
-sed 's/^name: small/name: TITLES/' small.yaml >title.yaml
+sed 's/^name: swimmer/name: TITLES/' swimmer.yaml >title.yaml
 run run title.yaml -q -o title.nc
 LC_ALL=C sed -i $'s/TITLES/\e[31m!/' title.nc
 run info title.nc

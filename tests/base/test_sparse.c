@@ -4,8 +4,6 @@
 #include "base/sparse.h"
 #include "school.h"
 
-const bool school_small = true;
-
 // 3 x 3, added out of order and twice at (0, 2):   2 .  7      the values times factor
 //                                                  . .  3
 //                                                  4 5  .

@@ -6,9 +6,9 @@
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 
-cat >small.yaml <<'end'
+cat >swimmer.yaml <<'end'
 format: 1
-name: small
+name: swimmer
 time: {end: 0.2, shedding_interval: 0.01, output_interval: 0.02}
 fish: [{force: reactive, nodes: 9, sheet_points: 17, body: {tail_thickness: 0.3}}]
 end
@@ -31,7 +31,7 @@ said=
 for ((i = 1; i < 20; i++)); do
     code=0
     ASAN_OPTIONS=verify_asan_link_order=0:detect_leaks=0 LD_PRELOAD=$(dirname "$program")/files.so FAULT_PATH=last.nc \
-        FAULT_CALL=fsync FAULT_AT=$i FAULT_HOW=EIO "$program" run small.yaml -q --force -o last.nc >out 2>err || code=$?
+        FAULT_CALL=fsync FAULT_AT=$i FAULT_HOW=EIO "$program" run swimmer.yaml -q --force -o last.nc >out 2>err || code=$?
     ! grep -q 'last.nc: cannot be closed (Input/output error): the last rows may be missing' err ||
         said+="$code $(ncdump -h last.nc | sed -n 's/.*:run_status = "\(.*\)" ;/\1/p')"
 done
@@ -41,7 +41,7 @@ check "a result that cannot be closed says so" test "$said" = "4 failed: the las
 
 for closed in '<&-' '>&-' '2>&-' '<&- >&- 2>&-'; do
     code=0
-    eval "\"\$program\" run small.yaml --force -o closed.nc $closed" || code=$?
+    eval "\"\$program\" run swimmer.yaml --force -o closed.nc $closed" || code=$?
     # failing output is an error, after the result is complete
     if [[ $closed == *' >&-'* || $closed == '>&-' ]]; then want=4; else want=0; fi
     check "closed $closed: exit code $want" ended $want
@@ -49,14 +49,14 @@ for closed in '<&-' '>&-' '2>&-' '<&- >&- 2>&-'; do
     check "closed $closed: it can be read" "$program" info closed.nc
 done 2>/dev/null
 code=0
-{ "$program" run small.yaml --force -o pipe.nc 2> >(exec true) >out; } || code=$?
+{ "$program" run swimmer.yaml --force -o pipe.nc 2> >(exec true) >out; } || code=$?
 check "a closed pipe for progress: exit 0" ended 0
 check "a closed pipe for progress: complete" complete pipe.nc
 
 # ---- signals
 
 code=0
-(trap '' INT HUP && exec "$program" run small.yaml -q --force -o ignored.nc --set time.end=1) >out 2>err &
+(trap '' INT HUP && exec "$program" run swimmer.yaml -q --force -o ignored.nc --set time.end=1) >out 2>err &
 pid=$!
 for signal in INT HUP INT; do
     sleep 0.1
@@ -77,7 +77,7 @@ else
         code=0
         (ulimit -v "$1" && exec timeout "$time_limit" "$program" "${@:2}") >out 2>err </dev/null || code=$?
     }
-    limited 300000 run small.yaml -q --force -o threads.nc --threads 64
+    limited 300000 run swimmer.yaml -q --force -o threads.nc --threads 64
     check "threads that cannot be started: exit 4" ended 4
     check "threads that cannot be started: says so" grep -q 'of 64 threads can be started' err
 fi

@@ -6,9 +6,9 @@
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 
-cat >small.yaml <<'end'
+cat >swimmer.yaml <<'end'
 format: 1
-name: small
+name: swimmer
 time: {end: 0.1, shedding_interval: 0.02, output_interval: 0.02}
 fish: [{force: reactive, nodes: 7, sheet_points: 9, body: {tail_thickness: 0.3}}]
 end
@@ -19,16 +19,16 @@ time: {end: 1, shedding_interval: 0.1}
 fish: [{force: reactive, nodes: 7, sheet_points: 9, body: {tail_thickness: 0.3}, wave: {frequency: 1}}]
 steady: {beats: 3}
 end
-run run small.yaml -q -o good.nc
+run run swimmer.yaml -q -o good.nc
 cp good.nc kept.nc
 
 unchanged() { cmp -s "$1" "$2"; }
 
 # ---- an input is never an output
 
-cp small.yaml case.yaml
+cp swimmer.yaml case.yaml
 refused run_does_not_replace_its_case 4 'case.yaml exists and is no NetCDF file of shoal' run case.yaml -q -o case.yaml --force
-check the_case_stays unchanged case.yaml small.yaml
+check the_case_stays unchanged case.yaml swimmer.yaml
 for command in view field; do
     refused "$command does not replace its run" 4 'good.nc is the file that is read' $command good.nc -q -o good.nc --force
     check "the run stays ($command)" unchanged good.nc kept.nc
@@ -47,11 +47,11 @@ texts=('mine' 'CDF of another program' '<!DOCTYPE html> of another program' '<?x
 for text in "${texts[@]}"; do
     echo "$text" >foreign
     cp foreign foreign.kept
-    refused "run does not replace '$text'" 4 'no option replaces the file' run small.yaml -q -o foreign --force
+    refused "run does not replace '$text'" 4 'no option replaces the file' run swimmer.yaml -q -o foreign --force
     refused "field does not replace '$text'" 4 'no option replaces the file' field good.nc -q -o foreign --force
     refused "view does not replace '$text'" 4 'no option replaces the file' view good.nc -q -o foreign --force
     refused "steady does not replace '$text'" 4 'no option replaces the file' steady still.yaml -q -o foreign --force
-    refused "compare does not replace '$text'" 4 'no option replaces the file' compare small.yaml -q -o foreign --force
+    refused "compare does not replace '$text'" 4 'no option replaces the file' compare swimmer.yaml -q -o foreign --force
     check "the file stays ('$text')" unchanged foreign foreign.kept
 done
 refused a_page_does_not_replace_a_run 4 'kept.nc exists and is no page of shoal' view good.nc -q -o kept.nc --force
@@ -62,11 +62,11 @@ refused export_replaces_no_foreign_file 4 'vtk/good-bodies-0002.vtp exists and i
     --force
 check the_foreign_file_stays unchanged vtk/good-bodies-0002.vtp vtk.kept
 : >empty.nc
-run run small.yaml -q -o empty.nc --force
+run run swimmer.yaml -q -o empty.nc --force
 check an_empty_file_is_replaced test "$code" = 0 -a -s empty.nc
 for again in run view field; do
     case $again in
-        run) arguments=(run small.yaml -q -o again.nc) ;;
+        run) arguments=(run swimmer.yaml -q -o again.nc) ;;
         view) arguments=(view good.nc -q -o again.html) ;;
         field) arguments=(field good.nc -q --grid 3,3 -o again-field.nc) ;;
     esac
@@ -82,7 +82,7 @@ check export_replaces_its_own_files test "$code" = 0
 
 echo precious >precious
 cp precious precious.kept
-for arguments in 'view good.nc -q -o page.html' 'field good.nc -q --grid 3,3 -o page.html' 'run small.yaml -q -o page.html'; do
+for arguments in 'view good.nc -q -o page.html' 'field good.nc -q --grid 3,3 -o page.html' 'run swimmer.yaml -q -o page.html'; do
     for kind in link file; do
         rm -f page.html.part
         if [[ $kind == link ]]; then ln -s precious page.html.part; else cp precious page.html.part; fi
@@ -126,10 +126,10 @@ fi
 # ---- parts of runs that died
 
 cp good.nc late.nc.part
-run run small.yaml -q -o late.nc
+run run swimmer.yaml -q -o late.nc
 check the_part_of_a_run_that_died_is_used_again test "$code" = 0 -a -s late.nc -a ! -e late.nc.part
 cp good.nc late.nc.part
-refused a_run_that_is_refused_leaves_no_part 4 'late.nc exists' run small.yaml -q -o late.nc
+refused a_run_that_is_refused_leaves_no_part 4 'late.nc exists' run swimmer.yaml -q -o late.nc
 check nor_the_part_of_a_run_that_died test ! -e late.nc.part
 
 # ---- an old result stays until there is a new one
@@ -154,15 +154,15 @@ check the_next_search_removes_what_that_one_left eval '((code == 0)) && test ! -
 
 # ---- two results have two checkpoints
 
-run run small.yaml -q -o a.nc --checkpoint-at 0.04
-run run small.yaml -q -o a --checkpoint-at 0.06
+run run swimmer.yaml -q -o a.nc --checkpoint-at 0.04
+run run swimmer.yaml -q -o a --checkpoint-at 0.06
 check a_result_without_an_ending_leaves_the_checkpoint_of_the_other has <("$program" info a.ckpt) 'the result is a.nc'
 run resume a.ckpt -q --end 0.12
 check the_first_is_resumed test "$code" = 0
 run resume a.checkpoint -q --end 0.14
 check the_second_is_resumed test "$code" = 0
 cp a.ckpt good.ckpt
-refused a_checkpoint_of_another_result_stays 4 'good.ckpt is a checkpoint of a.nc' run small.yaml -q -o good.nc --force
+refused a_checkpoint_of_another_result_stays 4 'good.ckpt is a checkpoint of a.nc' run swimmer.yaml -q -o good.nc --force
 check its_bytes_stay eval 'unchanged a.ckpt good.ckpt && unchanged good.nc kept.nc'
 
 finish

@@ -5,13 +5,13 @@
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 
-cat >small.yaml <<'end'
+cat >swimmer.yaml <<'end'
 format: 1
-name: small
+name: swimmer
 time: {end: 0.04, shedding_interval: 0.02, output_interval: 0.02}
 fish: [{}]
 end
-{ cat small.yaml && echo 'sweep: [{key: "fish[*].wave.amplitude", values: [0.2, 0.3]}]'; } >study.yaml
+{ cat swimmer.yaml && echo 'sweep: [{key: "fish[*].wave.amplitude", values: [0.2, 0.3]}]'; } >study.yaml
 mkdir study && mv study.yaml study/case.yaml
 precious() { [[ $(<precious) == precious ]]; }
 echo precious >precious
@@ -24,36 +24,36 @@ mkfifo fifo.nc
 for name in link dangling; do
     for force in '' --force; do
         # shellcheck disable=SC2086 # no option if the variable is empty
-        refused "run $force does not replace a link ($name)" 4 'is a link' run small.yaml -q $force -o $name.nc
+        refused "run $force does not replace a link ($name)" 4 'is a link' run swimmer.yaml -q $force -o $name.nc
     done
     check "the link stays ($name)" test -L $name.nc
 done
 check what_a_link_points_to_is_untouched precious
-refused run_refuses_a_fifo 4 'is not an ordinary file' run small.yaml -q --force -o fifo.nc
+refused run_refuses_a_fifo 4 'is not an ordinary file' run swimmer.yaml -q --force -o fifo.nc
 refused info_refuses_a_fifo 4 'not an ordinary file' info fifo.nc
 refused run_does_not_wait_for_a_case_from_a_fifo 2 'fifo.nc' run fifo.nc
-run run <(cat small.yaml) -q -o pipe.nc
+run run <(cat swimmer.yaml) -q -o pipe.nc
 check a_case_comes_from_a_pipe test "$code" = 0 -a -s pipe.nc
 if ((EUID == 0)) && mknod device c 1 3 2>/dev/null; then
-    refused run_refuses_a_device 4 'is not an ordinary file' run small.yaml -q --force -o device
-    refused compare_refuses_a_device 4 'is not an ordinary file' compare small.yaml -q --force -o device
+    refused run_refuses_a_device 4 'is not an ordinary file' run swimmer.yaml -q --force -o device
+    refused compare_refuses_a_device 4 'is not an ordinary file' compare swimmer.yaml -q --force -o device
     check the_device_stays test -c device
 else
     skip a_device 'only root makes one'
 fi
-refused compare_finds_a_missing_folder_first 4 'there is no folder no/such' compare small.yaml -o no/such/x.nc
+refused compare_finds_a_missing_folder_first 4 'there is no folder no/such' compare swimmer.yaml -o no/such/x.nc
 check and_has_not_begun test ! -s out
 
 # the name under which a result is made
 ln -s precious part.nc.part
-refused run_refuses_a_link_as_part 4 'part.nc.part exists and is no file of shoal' run small.yaml -q -o part.nc
+refused run_refuses_a_link_as_part 4 'part.nc.part exists and is no file of shoal' run swimmer.yaml -q -o part.nc
 check nothing_is_written_through_a_part precious
 check the_link_stays test -L part.nc.part
 rm part.nc.part && ln precious part.nc.part
-refused run_refuses_a_second_name_as_part 4 'part.nc.part exists and is no file of shoal' run small.yaml -q -o part.nc
+refused run_refuses_a_second_name_as_part 4 'part.nc.part exists and is no file of shoal' run swimmer.yaml -q -o part.nc
 check nothing_is_written_to_another_name_of_a_part precious
 rm part.nc.part && mkfifo part.nc.part
-refused run_refuses_a_fifo_as_part 4 'part.nc.part exists and is no file of shoal' run small.yaml -q -o part.nc
+refused run_refuses_a_fifo_as_part 4 'part.nc.part exists and is no file of shoal' run swimmer.yaml -q -o part.nc
 rm part.nc.part
 
 # ---- studies

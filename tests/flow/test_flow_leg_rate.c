@@ -80,7 +80,7 @@ static void sum_of_legs(const struct flow *flow, int f, int g, bool of_images, d
 // both ways to compute the sum over two fish, the difference over the larger rate of one
 static double error_between_fish(double spacing, const char *second) {
     char text[1024];
-    snprintf(text, sizeof text, SCHOOL_DEFAULTS TIME FISH "fish: [{}, {start: {position: [0.1, 0.35]}, %s}]\n", second);
+    snprintf(text, sizeof text, TIME FISH "fish: [{}, {start: {position: [0.1, 0.35]}, %s}]\n", second);
     struct setup setup = with_wakes(text, (int)lround(3 / spacing), spacing);
     const struct flow *const flow = setup.residual->flow;
     double all[3] = {0}, exact[3] = {0}, size = 0;
@@ -135,8 +135,8 @@ TEST(images_of_legs_take_momentum_along_the_wall) {
     double error[2];
     for (int i = 0; i < 2; i++) {
         const double spacing = i == 0 ? 0.02 : 0.01;
-        struct setup setup = with_wakes(SCHOOL_DEFAULTS TIME "fluid: {walls: [-0.2]}\n" FISH "fish: [{}]\n",
-                                        (int)lround(3 / spacing), spacing);
+        struct setup setup =
+            with_wakes(TIME "fluid: {walls: [-0.2]}\n" FISH "fish: [{}]\n", (int)lround(3 / spacing), spacing);
         double rate[3], image[3], exact[3] = {0};
         flow_leg_rate(setup.residual->flow, setup.state, 0, rate, image);
         sum_of_legs(setup.residual->flow, 0, 0, true, exact);
@@ -154,9 +154,8 @@ TEST(the_tree_at_wakes_changes_no_rate) {
     for (int i = 0; i < 2; i++) {
         char text[1024];
         snprintf(text, sizeof text,
-                 SCHOOL_DEFAULTS TIME
-                 "wake: {tolerance: %g}\n" FISH
-                 "fish: [{}, {start: {position: [0.1, 0.35]}}, {start: {position: [1.3, 0.15]}}]\n",
+                 TIME "wake: {tolerance: %g}\n" FISH
+                      "fish: [{}, {start: {position: [0.1, 0.35]}}, {start: {position: [1.3, 0.15]}}]\n",
                  i == 0 ? 0 : 1e-4);
         struct setup setup = with_wakes(text, 700, 0.005);
         assert_int_equal(setup.residual->flow->is_in_pairs, i == 0);
@@ -174,13 +173,12 @@ TEST(far_legs_are_left_out) {
     double with[2][3], image[3];
     for (int i = 0; i < 2; i++) {
         char text[1024];
-        snprintf(text, sizeof text, SCHOOL_DEFAULTS TIME FISH "fish: [{}, {start: {position: [0, %g]}}]\n",
-                 i == 0 ? 3.0 : 0.5);
+        snprintf(text, sizeof text, TIME FISH "fish: [{}, {start: {position: [0, %g]}}]\n", i == 0 ? 3.0 : 0.5);
         struct setup setup = with_wakes(text, 300, 0.01);
         flow_leg_rate(setup.residual->flow, setup.state, 0, with[i], image);
         school_clear(&setup);
     }
-    struct setup alone = with_wakes(SCHOOL_DEFAULTS TIME FISH "fish: [{}]\n", 300, 0.01);
+    struct setup alone = with_wakes(TIME FISH "fish: [{}]\n", 300, 0.01);
     double rate[3];
     flow_leg_rate(alone.residual->flow, alone.state, 0, rate, image);
     NEAR_ARRAY(3, with[0], rate, 0, 1e-12);

@@ -15,17 +15,17 @@ done
 awk '/^====? / { file = "cases/bad-" $2 ".yaml"; if ($1 == "===") print "format: 1\ntime: {end: 1}" >file; next }
      /^----$/ { file = "" }
      file { print >file }' "$tests/case/bad_cases.txt"
-cat >small.yaml <<'end'
+cat >swimmer.yaml <<'end'
 format: 1
-name: small
+name: swimmer
 time: {end: 0.04, shedding_interval: 0.02, output_interval: 0.02}
 fish: [{force: reactive, nodes: 4, sheet_points: 5}]
 end
-"$program" run small.yaml -q --force -o results/run.nc
+"$program" run swimmer.yaml -q --force -o results/run.nc
 "$program" field results/run.nc -q --force --at 0.04 --grid 4,4 -o results/field.nc
-"$program" study small.yaml -q -o study --set 'sweep=[{key: "fish[*].wave.amplitude", values: [0.2, 0.3]}]' >table
+"$program" study swimmer.yaml -q -o study --set 'sweep=[{key: "fish[*].wave.amplitude", values: [0.2, 0.3]}]' >table
 cp study/study.nc study/member-0000.nc results
 for shedding in sheet impulsive continuous; do
-    "$program" run small.yaml -q --force --checkpoint-at 0.02,0.04 --set wake.shedding=$shedding -o $shedding.nc
+    "$program" run swimmer.yaml -q --force --checkpoint-at 0.02,0.04 --set wake.shedding=$shedding -o $shedding.nc
     cp $shedding.ckpt $shedding.ckpt.previous checkpoints
 done

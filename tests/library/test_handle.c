@@ -6,16 +6,15 @@
 #include "library/handle.h"
 #include "school.h"
 
-const bool school_small = true;
-
 #define TIME "time: {end: 2, shedding_interval: 0.02}\n"
+#define SMALL TIME "defaults: {fish: {nodes: 7}}\n"
 
 static void set(const struct simulation *simulation, const char *key, double value) {
     school_ok(handle_set_key(simulation, 0, key, 1, &value));
 }
 
 TEST(the_phase_of_the_beat_is_continuous) {
-    struct simulation *const simulation = school_simulation(TIME "fish: [{control: {ramp: 0.2}}]\n");
+    struct simulation *const simulation = school_simulation(SMALL "fish: [{control: {ramp: 0.2}}]\n");
     school_run(simulation, 0.6);
     const struct fish *const fish = simulation->school->fish;
     const struct control_memory *const memory = simulation->state->control;
@@ -32,7 +31,7 @@ TEST(the_phase_of_the_beat_is_continuous) {
 
 TEST(amplitude_and_bias_get_there_within_the_ramp) {
     struct simulation *const simulation =
-        school_simulation(TIME "fish: [{wave: {amplitude: 0.4, ramp: 0}, control: {ramp: 0.2, bias: 0.1}}]\n");
+        school_simulation(SMALL "fish: [{wave: {amplitude: 0.4, ramp: 0}, control: {ramp: 0.2, bias: 0.1}}]\n");
     school_run(simulation, 0.6);
     const struct fish *const fish = simulation->school->fish;
     set(simulation, "wave.amplitude", 0.2);
@@ -48,8 +47,10 @@ TEST(amplitude_and_bias_get_there_within_the_ramp) {
 
 // the nose after a swim in which everything is set, three times within one ramp; or nothing
 static double led_swim(const char *solver, int is_led, long *steps) {
-    struct simulation *const simulation =
-        school_simulation_of("%ssolver: %s\nfish: [{control: {ramp: 0.2}, body: {modulus: 1.0e+5}}]\n", TIME, solver);
+    struct simulation *const simulation = school_simulation_of(
+        "%ssolver: %s\nfish: [{nodes: 7, sheet_points: 13, pressure: {span: infinite}, control: {ramp: 0.2}, body: "
+        "{modulus: 1.0e+5}}]\n",
+        TIME, solver);
     static const struct {
         double t;
         const char *key;
@@ -81,8 +82,8 @@ TEST(every_method_integrates_the_same_led_swim) {
 }
 
 TEST(a_desired_heading_is_taken_up_the_short_way) {
-    struct simulation *const simulation =
-        school_simulation(TIME "fish: [{control: {law: heading, ramp: 0.2, desired_heading: [[0, 170], [2, 178]]}}]\n");
+    struct simulation *const simulation = school_simulation(
+        SMALL "fish: [{control: {law: heading, ramp: 0.2, desired_heading: [[0, 170], [2, 178]]}}]\n");
     school_run(simulation, 0.5);
     const struct fish *const fish = simulation->school->fish;
     const struct control_memory *const memory = simulation->state->control;
@@ -97,7 +98,7 @@ TEST(a_desired_heading_is_taken_up_the_short_way) {
 
 TEST(waypoints_are_taken_up) {
     struct simulation *const simulation =
-        school_simulation(TIME "fish: [{control: {law: course, waypoints: [[-9, 0]], acceptance_radius: 0.3}}]\n");
+        school_simulation(SMALL "fish: [{control: {law: course, waypoints: [[-9, 0]], acceptance_radius: 0.3}}]\n");
     school_run(simulation, 0.1);
     const struct fish *const fish = simulation->school->fish;
     const double *const y = simulation->state->y;
@@ -122,7 +123,7 @@ static void refused(const struct simulation *simulation, const char *key, int n,
 }
 
 TEST(what_has_no_use_is_refused) {
-    struct simulation *simulation = school_simulation(TIME "fish: [{}]\n");
+    struct simulation *simulation = school_simulation(SMALL "fish: [{}]\n");
     refused(simulation, "wave.number", 1, 1, "'wave.number' cannot be set");
     refused(simulation, "wave.amplitude", 1, NAN, "is not finite");
     refused(simulation, "wave.amplitude", 1, 40, "below 3.14");
@@ -132,7 +133,7 @@ TEST(what_has_no_use_is_refused) {
     refused(simulation, "wave.frequency", 1, -0.1, "cannot be negative");
     refused(simulation, "control.desired_heading", 1, 90, "has no control law");
     refused(simulation, "control.waypoints", 2, 1, "needs 'law: course'");
-    simulation = school_simulation(TIME "fish: [{wave: {amplitude: 0}, control: {waypoints: [[-3, 0]]}}]\n");
+    simulation = school_simulation(SMALL "fish: [{wave: {amplitude: 0}, control: {waypoints: [[-3, 0]]}}]\n");
     refused(simulation, "wave.amplitude", 1, 0.1, "in the case is 0: give an initial amplitude");
     refused(simulation, "control.bias", 1, 0.1, "sets the bias: use");
     refused(simulation, "control.desired_heading", 1, 90, "follows waypoints");

@@ -20,8 +20,6 @@
 #include "school.h"
 #include "shoal.h"
 
-const bool school_small = true;
-
 // two fish with different sizes and positions
 static const char case_text[] =
     "format: 1\nname: two\ntime: {end: 0.1, shedding_interval: 0.02}\n"
@@ -619,10 +617,10 @@ static struct shoal *run_in_units(int i, double length, double time) {
     static const char *const fish[] = {
         "wave: {frequency: %.17g}}}\nfish:\n"
         "  - {nodes: 7, sheet_points: 27, sensors: [0.2, 0.7], load: {tip: [%.17g, %.17g]}, control: {law: course}}\n"
-        "  - {nodes: 7, sheet_points: 15, force: reactive, drag: {law: linear_quadratic}, start: {position: [%.17g, "
+        "  - {nodes: 7, sheet_points: 15, force: reactive, start: {position: [%.17g, "
         "%.17g]}}\n  - {nodes: 9, sheet_points: 27, wave: {amplitude: 0}, start: {position: [%.17g, %.17g]},\n"
         "     motion: {prescribed: head, heave: %.17g, pitch: 10, frequency: %.17g, speed: %.17g}}\n",
-        "wave: {frequency: %.17g}, nodes: 7, sheet_points: 15, force: reactive, load: {tip: [%.17g, %.17g]}}}\n"
+        "wave: {frequency: %.17g}, sheet_points: 15, force: reactive, load: {tip: [%.17g, %.17g]}}}\n"
         "wake: {shedding: continuous, taper: 0, taper_beside: 0}\nsheet: {curve: polygon}\nfish:\n"
         "  - {drag: {skin: boundary_layer},\n"
         "     control: {law: averaged_heading, desired_heading: 150, feedforward: 1, rate: %.17g, filter: %.17g}}\n"
@@ -633,7 +631,7 @@ static struct shoal *run_in_units(int i, double length, double time) {
     snprintf(whole, sizeof whole,
              "format: 1\nname: units\ntime: {end: %%.17g, shedding_interval: %%.17g}\n"
              "fluid: {viscosity: %%.17g, velocity: [%%.17g, 0], %s}\n"
-             "defaults: {fish: {length: %%.17g, start: {speed: %%.17g}, body: {modulus: %%.17g}, %s",
+             "defaults: {fish: {nodes: 7, length: %%.17g, start: {speed: %%.17g}, body: {modulus: %%.17g}, %s",
              i == 0 ? "walls: [%.17g, %.17g]" : "gust: {amplitude: %.17g, frequency: %.17g}", fish[i]);
     snprintf(text, sizeof text, whole, t, 0.02 * t, 1e-3 * l * v, 0.1 * v, i == 0 ? -0.9 * l : 0.1 * v,
              i == 0 ? 1.3 * l : 1.5 / t, l, 0.7 * v, 1e6 * v * v, 1 / t, 3 * force, -2 * force,

@@ -12,8 +12,6 @@
 #include "school.h"
 #include "state/state.h"
 
-const bool school_small = true;
-
 #define SCHOOL                                                                                                \
     "time: {end: 1, shedding_interval: 0.02}\nfish: [{name: a}, {nodes: 5, start: {position: [1, 2]}, wave: " \
     "{frequency: "                                                                                            \

@@ -6,7 +6,7 @@
 same() { /usr/bin/python3 "$root/tests/run/same_result.py" "$@"; }
 places() { /usr/bin/python3 -c 'import sys, netCDF4; print(netCDF4.Dataset(sys.argv[1]).checkpoint_at.strip("\0"))' "$1"; }
 
-cat >small.yaml <<'CASE'
+cat >swimmer.yaml <<'CASE'
 format: 1
 time: {end: 1, shedding_interval: 0.01, output_interval: 0.02}
 output: {wake_interval: 0.1}
@@ -76,16 +76,16 @@ stopped() {  # name, signals, arguments of run...
     run run "$@" -q -o reference.nc --checkpoint-at "$(places run.nc)"
     check "$name: the bits of the run with the same checkpoints" same run.nc reference.nc
 }
-stopped sheet 'TERM HUP' small.yaml
-stopped two_threads USR1 small.yaml --threads 2 --set output.precision=single
-stopped impulsive INT small.yaml --set wake.shedding=impulsive --set time.shedding_interval=0.02
-stopped finite_span TERM small.yaml --set 'fish[*].force=pressure' --set 'fish[*].pressure.span=finite' --set wake.merge=0.1
-stopped pressure TERM small.yaml --set 'fish[*].force=pressure' --set 'fish[*].pressure.span=infinite' --set 'fish[*].pressure.suction_limit=0.01'
-stopped merged TERM small.yaml --set 'fish[*].start.speed=3' --set wake.merge=0.1 --set time.end=1.6
+stopped sheet 'TERM HUP' swimmer.yaml
+stopped two_threads USR1 swimmer.yaml --threads 2 --set output.precision=single
+stopped impulsive INT swimmer.yaml --set wake.shedding=impulsive --set time.shedding_interval=0.02
+stopped finite_span TERM swimmer.yaml --set 'fish[*].force=pressure' --set 'fish[*].pressure.span=finite' --set wake.merge=0.1
+stopped pressure TERM swimmer.yaml --set 'fish[*].force=pressure' --set 'fish[*].pressure.span=infinite' --set 'fish[*].pressure.suction_limit=0.01'
+stopped merged TERM swimmer.yaml --set 'fish[*].start.speed=3' --set wake.merge=0.1 --set time.end=1.6
 check "merged: each of the 161 vortices of two fish is in a wake or merged" \
     test "$("$program" info run.nc | awk '/merged vortices/ { print ($3 > 20 && $3 + $8 == 322) }')" = 1
 check "merged: the total circulation stays" test "$("$program" info run.nc | awk '/total circulation/ { print ($3 * $3 < 1e-26) }')" = 1
-stopped explicit TERM small.yaml --set solver.method=dormand_prince --set time.checkpoint_interval=0.25
+stopped explicit TERM swimmer.yaml --set solver.method=dormand_prince --set time.checkpoint_interval=0.25
 
 # ---- complete and incomplete results
 
@@ -95,34 +95,34 @@ refused end_before_the_checkpoint 2 '--end 0.5: the checkpoint is at t = 1 s alr
 refused no_end 2 'time.end: 2.003 s is not an integer multiple' resume run.ckpt --end 2.003
 run resume run.ckpt -q --end 1.2
 check extended test "$code" = 0
-run run small.yaml --set solver.method=dormand_prince --set time.checkpoint_interval=0.25 --set time.end=1.2 -q \
+run run swimmer.yaml --set solver.method=dormand_prince --set time.checkpoint_interval=0.25 --set time.end=1.2 -q \
     -o reference.nc --checkpoint-at "$(places run.nc)" --force
 check an_extended_run_is_the_longer_run same run.nc reference.nc
 # a checkpoint between two rows, behind a row with a wake
 # and a checkpoint at the end, whose row has a wake only because the row is the last
 for at in 0.05 0.06; do
     between=(--force -q --set time.checkpoint_interval=$at --set output.wake_interval=$([[ $at = 0.05 ]] && echo 0.02 || echo 0.1))
-    run run small.yaml "${between[@]}" -o between.nc --set time.end=0.06
+    run run swimmer.yaml "${between[@]}" -o between.nc --set time.end=0.06
     run resume between.ckpt -q --end 0.12
-    run run small.yaml "${between[@]}" -o reference.nc --set time.end=0.12
+    run run swimmer.yaml "${between[@]}" -o reference.nc --set time.end=0.12
     check "the wakes of the longer run, with a checkpoint at $at s" same between.nc reference.nc
 done
-run run small.yaml -q -o placed.nc --set time.checkpoint_interval=0 --set time.end=0.06 --checkpoint-at 0.04
+run run swimmer.yaml -q -o placed.nc --set time.checkpoint_interval=0 --set time.end=0.06 --checkpoint-at 0.04
 run resume placed.ckpt -q --end 0.12
 check a_place_is_noted_once test "$(places placed.nc)" = 0.04
 refused no_checkpoint 4 'nothing.ckpt: cannot be read' resume nothing.ckpt
-refused a_case_file 4 'small.yaml: cannot be used: not a checkpoint of shoal' resume small.yaml
+refused a_case_file 4 'swimmer.yaml: cannot be used: not a checkpoint of shoal' resume swimmer.yaml
 refused a_complete_result 2 'run.nc is complete: give a later --end to extend the result' resume run.nc
-refused no_event 2 "--checkpoint-at: '0.333' is not the time of an event" run small.yaml --checkpoint-at 0.3,0.333
-refused no_time 2 '--max-wall 5: expects HH:MM:SS' run small.yaml --max-wall 5
+refused no_event 2 "--checkpoint-at: '0.333' is not the time of an event" run swimmer.yaml --checkpoint-at 0.3,0.333
+refused no_time 2 '--max-wall 5: expects HH:MM:SS' run swimmer.yaml --max-wall 5
 printf '%s\n' '#include <stdio.h>' 'unsigned alarm(unsigned n) { fprintf(stderr, "alarm %u", n); return 0; }' >alarm.c
 if "${CC:-cc}" -shared -fPIC -o alarm.so alarm.c 2>/dev/null; then
-    LD_PRELOAD=./alarm.so ASAN_OPTIONS=verify_asan_link_order=0 run run small.yaml -q -o timed.nc --max-wall 2:03:04
+    LD_PRELOAD=./alarm.so ASAN_OPTIONS=verify_asan_link_order=0 run run swimmer.yaml -q -o timed.nc --max-wall 2:03:04
     check hours_minutes_and_seconds has err "alarm $((2 * 3600 + 3 * 60 + 4))"
 else
     skip hours_minutes_and_seconds "no C compiler"
 fi
-refused no_multiple 2 'time.checkpoint_interval: 0.015 s is not an integer multiple' check small.yaml \
+refused no_multiple 2 'time.checkpoint_interval: 0.015 s is not an integer multiple' check swimmer.yaml \
     --set time.checkpoint_interval=0.015
 run info -v run.ckpt
 check info_tells_of_a_checkpoint eval 'has out "a run at t = 1 s; the result is run.nc" && has out balance.power'
@@ -133,7 +133,7 @@ check the_case_of_a_checkpoint_is_a_case "$program" check case.yaml -q
 # ---- killed: the last checkpoint and the previous checkpoint
 
 rm -f ./*.nc ./*.ckpt*
-regular=(small.yaml --set time.checkpoint_interval=0.1)
+regular=(swimmer.yaml --set time.checkpoint_interval=0.1)
 run run "${regular[@]}" -q -o reference.nc
 # a run that ends before the signal starts again
 for ((try = 0; try < 20; try++)); do
@@ -217,7 +217,7 @@ refused a_file_of_another_program 4 'run.ckpt exists and is no checkpoint of sho
 # ---- killed between checkpoints of the wall time, and resumed by the name of the result
 
 rm -f ./*.nc ./*.ckpt*
-wall=(small.yaml --set time.end=3 --set time.checkpoint_wall=1e-3 --set output.wake_interval=1)
+wall=(swimmer.yaml --set time.end=3 --set time.checkpoint_wall=1e-3 --set output.wake_interval=1)
 run run "${wall[@]}" -q -o walls.nc
 check wall_time_leaves_no_checkpoint_at_the_end test "$code" = 0 -a ! -e walls.ckpt -a ! -e walls.ckpt.previous
 run run "${wall[@]}" -q -o none.nc --set time.checkpoint_wall=0
@@ -249,21 +249,21 @@ check a_complete_run_is_extended_by_its_name test "$code" = 0
 refused a_complete_run_without_checkpoint 4 'walls.nc is complete, and has no checkpoint to go on from: run it again' \
     resume walls.nc --end 4
 cp kept.nc lonely.nc
-refused a_killed_run_without_checkpoint 4 "s, but no checkpoint (lonely.ckpt) to continue from: start again with '$program run small.yaml" \
+refused a_killed_run_without_checkpoint 4 "s, but no checkpoint (lonely.ckpt) to continue from: start again with '$program run swimmer.yaml" \
     resume lonely.nc
 rm -f ./*.nc ./*.ckpt*
 
 # ---- one run at a time, signals that are ignored, and a signal within a long event
 
 rm -f ./*.nc ./*.ckpt*
-start run small.yaml --set time.end=100 --set time.checkpoint_interval=0.2 -o run.nc
+start run swimmer.yaml --set time.end=100 --set time.checkpoint_interval=0.2 -o run.nc
 wait_for test -s run.ckpt
-refused locked 4 "run.nc: another run writes this result: wait until" run small.yaml -o run.nc --force
+refused locked 4 "run.nc: another run writes this result: wait until" run swimmer.yaml -o run.nc --force
 mkdir beside
 ln run.nc beside/run.nc
 wait_for cp run.ckpt beside/run.ckpt  # which the run replaces all the time
 refused a_hard_link_has_the_same_lock 4 "beside/run.nc: another run writes this result" resume beside/run.ckpt --end 200
-refused for_a_new_run_too 4 "beside/run.nc: another run writes this result" run small.yaml -o beside/run.nc --force
+refused for_a_new_run_too 4 "beside/run.nc: another run writes this result" run swimmer.yaml -o beside/run.nc --force
 ln -sf ../run.nc beside/run.nc
 refused a_link_is_not_resumed 4 "beside/run.nc is a link" resume beside/run.ckpt --end 200
 check nothing_is_left_beside test "$(ls beside)" = "$(printf 'run.ckpt\nrun.nc')"
@@ -271,7 +271,7 @@ rm -r beside
 end TERM
 check a_run_leaves_no_part test ! -e run.nc.part
 rm -f ./*.nc ./*.ckpt*
-(trap '' HUP && exec "$program" run small.yaml -q --set time.end=100 -o run.nc >out 2>err </dev/null) &
+(trap '' HUP && exec "$program" run swimmer.yaml -q --set time.end=100 -o run.nc >out 2>err </dev/null) &
 pid=$!
 wait_for test -s run.nc
 kill -HUP "$pid"
@@ -280,12 +280,12 @@ check an_ignored_signal_stays_ignored kill -0 "$pid"
 end TERM
 check the_others_do_not test "$code" = 75
 rm -f ./*.nc ./*.ckpt*
-run run small.yaml -q --max-wall 0:00:01 --set time.end=1000 -o run.nc
+run run swimmer.yaml -q --max-wall 0:00:01 --set time.end=1000 -o run.nc
 check max_wall eval 'test "$code" = 75 && has err "stopped after --max-wall at t = "'
 
 # the command in a message is one for a shell
 mkdir "it's a folder"
-run run small.yaml -q --max-wall 0:00:01 --set time.end=1000 -o "it's a folder/run.nc"
+run run swimmer.yaml -q --max-wall 0:00:01 --set time.end=1000 -o "it's a folder/run.nc"
 sed -n "s/.*continue with '\(.*\)'\$/\1/p" err >command.sh
 echo "$(<command.sh) -q --max-wall 0:00:01" >again.sh
 shoal() { run "$@"; }
@@ -293,13 +293,13 @@ code=0
 # shellcheck source=/dev/null
 . ./again.sh
 check and_is_one_for_a_shell test "$code" = 75
-run run small.yaml -q --set time.end=1000 -o "it's a folder/run.nc"
+run run swimmer.yaml -q --set time.end=1000 -o "it's a folder/run.nc"
 check the_other_message_too has err "with 'shoal resume 'it'\\''s a folder/run.ckpt'', or"
 
 for method in "ida --set solver.rtol=1e-12 --set solver.max_steps=1000000000" "rk4 --set solver.step=1e-8"; do
     rm -f ./*.nc ./*.ckpt*
     # shellcheck disable=SC2086  # the method has options
-    run_until TERM 'test -s run.nc' run small.yaml -q --set time.shedding_interval=10 --set time.end=20 \
+    run_until TERM 'test -s run.nc' run swimmer.yaml -q --set time.shedding_interval=10 --set time.end=20 \
         --set time.output_interval=10 --set output.wake_interval=10 --set wake.lifetime=20 --set solver.max_steps=1000000000 \
         --set solver.method=$method -o run.nc
     check "a_long_event_is_left: ${method%% *}" eval '((code == 75)) && has err "stopped by a signal at t = 0 s"'
@@ -307,7 +307,7 @@ done
 
 # an event at t = 0 that takes seconds: there is no earlier event to return to
 rm -f ./*.nc ./*.ckpt*
-sed 's/nodes: [79], sheet_points: 21/nodes: 600, sheet_points: 600/' small.yaml >large.yaml
+sed 's/nodes: [79], sheet_points: 21/nodes: 600, sheet_points: 600/' swimmer.yaml >large.yaml
 run_until TERM 'sleep 0.5' run large.yaml -q -o run.nc
 check a_long_start_is_left eval '((code == 75)) && has err "stopped by a signal during the event at t = 0" &&
     test ! -e run.nc -a ! -e run.ckpt'

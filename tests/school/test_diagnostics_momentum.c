@@ -7,8 +7,6 @@
 #include "school/diagnostics_energy.h"
 #include "school/diagnostics_momentum.h"
 
-const bool school_small = true;
-
 #define TIME "time: {end: 2, shedding_interval: 0.02, output_interval: 0.02}\n"
 #define SWIMMER \
     "force: pressure, nodes: 9, sheet_points: 33, wave: {ramp: 0.5}, drag: {skin: laminar}, start: {speed: 0.5}, "
@@ -119,7 +117,7 @@ TEST(the_balance_is_closed_with_every_external_force) {
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[1024];
-        snprintf(text, sizeof text, SCHOOL_DEFAULTS TIME "%s", cases[i].text);
+        snprintf(text, sizeof text, TIME "%s", cases[i].text);
         const struct balance worst = run(text, 1.5);
         BELOW(worst.momentum, 5e-3);
         BELOW(worst.angular, 5e-3);
@@ -130,7 +128,7 @@ TEST(the_balance_is_closed_with_every_external_force) {
 
 // bodies in contact without fluid, one body with a load: rounding, and the error of the integral of the load
 TEST(without_a_fluid_it_is_closed_too) {
-    const struct balance worst = run(SCHOOL_DEFAULTS TIME
+    const struct balance worst = run(TIME
                                      "fluid: {density: 0}\nsolver: {rtol: 1.0e-7}\n"
                                      "defaults: {fish: {nodes: 9, wave: {amplitude: 0}, start: {speed: 1}}}\n"
                                      "fish: [{load: {tip: [3, 5]}, start: {position: [-0.1, 0.05], heading: 0}},\n"
@@ -141,8 +139,7 @@ TEST(without_a_fluid_it_is_closed_too) {
 }
 
 TEST(the_rate_of_legs_is_integrated_by_the_trapezoidal_rule) {
-    struct simulation *const simulation =
-        school_simulation(SCHOOL_DEFAULTS TIME "wake: {lifetime: 10}\nfish: [{" STRIP "}]\n");
+    struct simulation *const simulation = school_simulation(TIME "wake: {lifetime: 10}\nfish: [{" STRIP "}]\n");
     const struct momentum_balance *const now = simulation->state->momentum;
     const double interval = simulation->school->interval;
     school_run(simulation, 0.2);
@@ -165,10 +162,10 @@ TEST(the_rate_of_legs_is_integrated_by_the_trapezoidal_rule) {
 // doc/model.md, section 18: between fish R is 1e-2 of the exchange
 TEST(legs_of_other_fish_are_booked) {
     const struct balance worst = run(
-        SCHOOL_DEFAULTS TIME
-        "wake: {lifetime: 3, decay: 2}\n"
+        TIME
+        "wake: {lifetime: 3, decay: 2}\nsolver: {rtol: 1e-5}\n"
         "defaults: {fish: {force: pressure, pressure: {span: finite}, nodes: 9, sheet_points: 33, wave: {ramp: 0.5},\n"
-        "                  drag: {skin: laminar}, body: {depth: 0.25}, start: {speed: 0.5}}}\n"
+        "                  drag: {skin: laminar}, body: {thickness: 0.2, depth: 0.25}, start: {speed: 0.5}}}\n"
         "fish: [{}, {start: {position: [0, 0.4]}, wave: {phase: 180}}]\n",
         2);
     BELOW(worst.momentum, 1e-3);
@@ -178,13 +175,14 @@ TEST(legs_of_other_fish_are_booked) {
 // a wall without friction, the only external force, pushes across itself
 TEST(a_wall_pushes_across_itself) {
     for (int walls = 1; walls <= 2; walls++) {
-        struct simulation *const simulation =
-            school_simulation_of(SCHOOL_DEFAULTS TIME
-                                 "wake: {lifetime: 3, decay: 2}\nfluid: {viscosity: 0, walls: [-0.25%s]}\n"
-                                 "defaults: {fish: {drag: {normal: 0, skin: laminar}, pressure: {span: finite, "
-                                 "suction_limit: 0}}}\nfish: [{nodes: 9, sheet_points: 33, start: {speed: 0.5}},\n"
-                                 "       {nodes: 9, sheet_points: 33, start: {speed: 0.5, position: [0.4, 0.3]}}]\n",
-                                 walls == 2 ? ", 0.6" : "");
+        struct simulation *const simulation = school_simulation_of(
+            TIME
+            "solver: {rtol: 1e-5}\nwake: {lifetime: 3, decay: 2}\nfluid: {viscosity: 0, walls: [-0.25%s]}\n"
+            "defaults: {fish: {body: {thickness: 0.2, depth: 0.25}, drag: {normal: 0, skin: laminar}, pressure: {span: "
+            "finite, "
+            "suction_limit: 0}}}\nfish: [{nodes: 9, sheet_points: 33, start: {speed: 0.5}},\n"
+            "       {nodes: 9, sheet_points: 33, start: {speed: 0.5, position: [0.4, 0.3]}}]\n",
+            walls == 2 ? ", 0.6" : "");
         school_measure(simulation, 2);
         const struct diagnostics_fish *const of = simulation->diagnostics->fish;
         const double along = of[0].external_impulse[0] + of[1].external_impulse[0];
@@ -210,7 +208,7 @@ TEST(forces_without_a_reaction_have_no_balance) {
          1, 1, 1},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        struct simulation *const simulation = school_simulation_of(SCHOOL_DEFAULTS TIME "%s", cases[i].text);
+        struct simulation *const simulation = school_simulation_of(TIME "%s", cases[i].text);
         for (int n = 0; n < 3; n++) school_ok(simulate_step(simulation));
         simulate_measure(simulation);
         const struct diagnostics_fish *const of = simulation->diagnostics->fish;
@@ -224,7 +222,7 @@ TEST(forces_without_a_reaction_have_no_balance) {
 // the same swim elsewhere, and in a stream
 static void fill(const char *fluid, const char *start, struct diagnostics_fish *of, double imbalance[3]) {
     struct simulation *const simulation =
-        school_simulation_of(SCHOOL_DEFAULTS TIME
+        school_simulation_of(TIME
                              "solver: {rtol: 1.0e-8}\n%swake: {lifetime: 0.5, decay: 0.3}\n"
                              "fish: [{force: pressure, pressure: {span: infinite}, nodes: 9, sheet_points: 33, wave: "
                              "{ramp: 0.5}, drag: {skin: laminar}, %s}]\n",
@@ -261,8 +259,7 @@ TEST(a_stream_changes_no_balance) {
 }
 
 TEST(a_restart_begins_the_balance_again) {
-    struct simulation *const simulation =
-        school_simulation(SCHOOL_DEFAULTS TIME "wake: {lifetime: 0.1}\nfish: [{" FISH "}]\n");
+    struct simulation *const simulation = school_simulation(TIME "wake: {lifetime: 0.1}\nfish: [{" FISH "}]\n");
     school_measure(simulation, 0.3);
     ABOVE(fabs(simulation->diagnostics->fish->lost_impulse[1]), 0);
     ABOVE(fabs(simulation->diagnostics->fish->external_impulse[0]), 0);
@@ -282,7 +279,7 @@ enum { ADDED = 1000 }; /* vortices of each fish: three markers each */
 /* A school whose wakes the tree sums where the tolerance is not 0: its balance, and whether it has been the tree. */
 static void swim_among_many(const char *fluid, double tolerance, double balance[3], double *size, int *by_tree) {
     struct simulation *const simulation =
-        school_simulation_of(SCHOOL_DEFAULTS TIME
+        school_simulation_of(TIME
                              "%swake: {lifetime: 0.8, decay: 0.6, spare_vortices: %d, tolerance: %g}\n"
                              "defaults: {fish: {" FISH "}}\nfish: [{}, {start: {position: [0.5, 0.6]}}]\n",
                              fluid, 3 * ADDED, tolerance);

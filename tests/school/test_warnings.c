@@ -8,8 +8,6 @@
 #include "school/diagnostics_energy.h"
 #include "school/warnings.h"
 
-const bool school_small = true;
-
 #define TIME "time: {end: 3, shedding_interval: 0.01}\n"
 
 // ---- which warnings a run has
@@ -50,22 +48,22 @@ static void expect_warnings(const char *text, double t, const char *expected) {
 }
 
 TEST(a_short_run_of_a_default_fish_has_none) {
-    expect_warnings(SCHOOL_DEFAULTS TIME "fish: [{}]\n", 1, "");
+    expect_warnings(TIME "fish: [{}]\n", 1, "");
 }
 
 TEST(a_fish_that_gathers_speed_drifts) {
-    expect_warnings(SCHOOL_DEFAULTS TIME "fish: [{}]\n", 2.5, "d");
+    expect_warnings(TIME "fish: [{}]\n", 2.5, "d");
     // without fluid no fish swims, so a changing speed is no defect
-    expect_warnings(SCHOOL_DEFAULTS TIME "fluid: {density: 0}\nfish: [{}]\n", 2.5, "");
+    expect_warnings(TIME "fluid: {density: 0}\nfish: [{}]\n", 2.5, "");
 }
 
 TEST(a_tail_without_a_limit_is_told) {
-#define CUSP(keys) SCHOOL_DEFAULTS TIME "fish: [{force: reactive, body: {tail_thickness: 0}, " keys "}]\n"
+#define CUSP(keys) TIME "fish: [{force: reactive, body: {thickness: 0.2, tail_thickness: 0}, " keys "}]\n"
     expect_warnings(CUSP("nodes: 25"), 0.1, "u");
     // for any number of nodes; not if the tail does not bend
     expect_warnings(CUSP("nodes: 61, sheet_points: 121"), 0.02, "u");
     expect_warnings(CUSP("motion: {prescribed: all}"), 0.1, "");
-    expect_warnings(SCHOOL_DEFAULTS TIME "fluid: {density: 0}\nfish: [{body: {tail_thickness: 0}}]\n", 0.1, "");
+    expect_warnings(TIME "fluid: {density: 0}\nfish: [{body: {tail_thickness: 0}}]\n", 0.1, "");
 }
 
 TEST(few_nodes_at_the_tail_are_told) {
@@ -76,7 +74,7 @@ TEST(few_nodes_at_the_tail_are_told) {
     for (int n = enough - 1; n <= enough; n++) {
         char text[256];
         snprintf(text, sizeof text,
-                 SCHOOL_DEFAULTS TIME
+                 TIME
                  "fish: [{force: reactive, nodes: %d, body: {profile: uniform, thickness: 0.1, modulus: 1e7}, wave: "
                  "{frequency: 2}}]\n",
                  n);
@@ -86,10 +84,10 @@ TEST(few_nodes_at_the_tail_are_told) {
 
 TEST(a_controller_that_chatters_is_told) {
     // a stiff body under a large damping: each beat of the course has more than four reversals
-#define STEERED(keys)                                                                                  \
-    SCHOOL_DEFAULTS                                                                                    \
-    "time: {end: 8, shedding_interval: 0.02}\n"                                                        \
-    "fish: [{force: reactive, start: {speed: 0.9}, wave: {amplitude: 0.7}, body: {modulus: 1.0e+7},\n" \
+#define STEERED(keys)                                                                                            \
+    "time: {end: 8, shedding_interval: 0.02}\n"                                                                  \
+    "fish: [{force: reactive, start: {speed: 0.9}, wave: {amplitude: 0.7}, body: {thickness: 0.2, depth: 0.25, " \
+    "modulus: 1.0e+7},\n"                                                                                        \
     "  control: {law: course, " keys "desired_heading: [[0, 180], [3, 180], [3.1, 120]]}}]\n"
     expect_warnings(STEERED("slow: 0, course_filter: 0, damping: 2, "), 7, "dh");
     // the defaults turn and hold the course without
@@ -100,18 +98,18 @@ TEST(a_controller_that_chatters_is_told) {
 TEST(the_published_force_is_told_and_nothing_else) {
     // few events, energy balance, drift, cusp: all suppressed for the published force
     expect_warnings("time: {end: 3, shedding_interval: 0.0625}\npreset: published\nfish: [{}]\n", 2.5, "p");
-    expect_warnings(SCHOOL_DEFAULTS TIME "fish: [{force: published}, {start: {position: [0, 2]}}]\n", 0.1, "p");
+    expect_warnings(TIME "fish: [{force: published}, {start: {position: [0, 2]}}]\n", 0.1, "p");
 }
 
 TEST(few_events_in_a_beat_are_told) {
-    expect_warnings(SCHOOL_DEFAULTS "time: {end: 3, shedding_interval: 0.0625}\nfish: [{}]\n", 0.5, "v");
-    expect_warnings(SCHOOL_DEFAULTS "time: {end: 3, shedding_interval: 0.05}\nfish: [{}]\n", 0.5, "");
+    expect_warnings("time: {end: 3, shedding_interval: 0.0625}\nfish: [{}]\n", 0.5, "v");
+    expect_warnings("time: {end: 3, shedding_interval: 0.05}\nfish: [{}]\n", 0.5, "");
 }
 
 TEST(a_soft_body_is_slower_than_its_beat) {
-    expect_warnings(SCHOOL_DEFAULTS TIME "fish: [{nodes: 33, body: {modulus: 1e5}}]\n", 0.1, "m");
+    expect_warnings(TIME "fish: [{nodes: 33, body: {modulus: 1e5}}]\n", 0.1, "m");
     // any stiffness of a passive body is allowed
-    expect_warnings(SCHOOL_DEFAULTS TIME "fish: [{body: {modulus: 1e5}, wave: {amplitude: 0}}]\n", 0.1, "");
+    expect_warnings(TIME "fish: [{body: {modulus: 1e5}, wave: {amplitude: 0}}]\n", 0.1, "");
 }
 
 TEST(the_worst_fish_is_named) {
@@ -120,7 +118,6 @@ TEST(the_worst_fish_is_named) {
     for (int i = 0; i < 2; i++) {
         char line[WARNING_BYTES];
         struct simulation *const simulation = school_simulation_of(
-            SCHOOL_DEFAULTS
             "time: {end: 1, shedding_interval: 0.05}\nfish: [{name: a, wave: {frequency: %s}}, {name: b, wave: "
             "{frequency: %s}, start: {position: [0, 2]}}, {name: c, start: {position: [0, 4]}}]\n",
             frequencies[i][0], frequencies[i][1]);
@@ -132,14 +129,13 @@ TEST(the_worst_fish_is_named) {
 }
 
 TEST(few_sheet_points_for_a_short_stretch_are_told) {
-#define PLATE(n)                                                     \
-    SCHOOL_DEFAULTS TIME "fish: [{force: reactive, sheet_points: " n \
-                         ", wave: {frequency: 0}, motion: {prescribed: all, speed: 1}}]\n"
+#define PLATE(n) \
+    TIME "fish: [{force: reactive, sheet_points: " n ", wave: {frequency: 0}, motion: {prescribed: all, speed: 1}}]\n"
     expect_warnings(PLATE("31"), 0.1, "");
     expect_warnings(PLATE("21"), 0.1, "s");
     // only a free sheet begins with the stretch of an interval
     expect_warnings(
-        SCHOOL_DEFAULTS TIME
+        TIME
         "wake: {shedding: continuous}\nfish: [{sheet_points: 21, wave: {frequency: 0}, motion: {prescribed: "
         "all, speed: 1}}]\n",
         0.1, "");
@@ -147,14 +143,14 @@ TEST(few_sheet_points_for_a_short_stretch_are_told) {
 
 TEST(an_open_energy_balance_is_told) {
     // a plate that pitches once in two events: the events do not resolve the power
-    expect_warnings(SCHOOL_DEFAULTS
-                    "time: {end: 10, shedding_interval: 0.5, output_interval: 0.5}\nfish: [{force: reactive, wave: "
-                    "{amplitude: 0}, motion: {prescribed: all, speed: 1, pitch: 10, frequency: 1}}]\n",
-                    10, "evf");
+    expect_warnings(
+        "time: {end: 10, shedding_interval: 0.5, output_interval: 0.5}\nfish: [{force: reactive, wave: "
+        "{amplitude: 0}, motion: {prescribed: all, speed: 1, pitch: 10, frequency: 1}}]\n",
+        10, "evf");
 }
 
 TEST(an_open_energy_balance_is_told_within_the_first_beat) {
-    struct simulation *const simulation = school_simulation(SCHOOL_DEFAULTS TIME "fish: [{start: {speed: 1}}]\n");
+    struct simulation *const simulation = school_simulation(TIME "fish: [{start: {speed: 1}}]\n");
     school_run(simulation, 0.5);
     const struct fish *const fish = simulation->school->fish;
     // a fish at 1 m/s, one length per beat: energy of one length per beat m, energy of the body m/2
@@ -169,7 +165,6 @@ TEST(an_open_energy_balance_is_told_within_the_first_beat) {
 // the first interval after a sudden transverse start of a plate; 8 % of the exchange are no warning in the first beat
 TEST(an_open_momentum_balance_is_told) {
 #define HEAVE(phase)                                                                                          \
-    SCHOOL_DEFAULTS                                                                                           \
     "time: {end: 3, shedding_interval: 0.01}\n"                                                               \
     "fish: [{force: pressure, pressure: {span: infinite}, nodes: 9, sheet_points: 33, wave: {amplitude: 0}, " \
     "body: {profile: uniform, thickness: 0.05}, drag: {skin: laminar}, start: {speed: 1}, "                   \
@@ -180,8 +175,7 @@ TEST(an_open_momentum_balance_is_told) {
 }
 
 TEST(a_run_that_diverges_in_its_first_beat_says_so) {
-    struct simulation *const simulation =
-        school_simulation(SCHOOL_DEFAULTS TIME "fish: [{}, {start: {position: [0, 2]}}]\n");
+    struct simulation *const simulation = school_simulation(TIME "fish: [{}, {start: {position: [0, 2]}}]\n");
     school_run(simulation, 0.1);
     const struct layout *const at = &simulation->school->fish[1].at;
     const double limit = 100 * 2 * 3.14159265358979;  // a hundred times the circular speed of a length per beat
@@ -212,7 +206,6 @@ TEST(a_run_that_diverges_in_its_first_beat_says_so) {
 
 TEST(a_foil_with_two_events_a_beat_whose_vortices_fly_away_has_diverged) {
     struct simulation *const simulation = school_simulation(
-        SCHOOL_DEFAULTS
         "time: {end: 1, shedding_interval: 0.02}\n"
         "fish: [{nodes: 9, force: pressure, motion: {prescribed: all, speed: 1, heave: 0.2, frequency: 25}}]\n");
     school_measure(simulation, 1);
@@ -223,7 +216,7 @@ TEST(a_foil_with_two_events_a_beat_whose_vortices_fly_away_has_diverged) {
 
 TEST(speeds_that_the_case_gives_are_no_divergence) {
     // a beat of 1 Hz alone would be exceeded a hundred times at 628 m/s, or m2/s
-#define REST SCHOOL_DEFAULTS TIME "fluid: {density: 0%s}\nfish: [{force: reactive, wave: {amplitude: 0}, %s}]\n"
+#define REST TIME "fluid: {density: 0%s}\nfish: [{force: reactive, wave: {amplitude: 0}, %s}]\n"
     static const struct {
         const char *fluid, *fish;
     } fast[] = {{", velocity: [0, 1e3]", "motion: {prescribed: all, speed: 0}"},
@@ -246,18 +239,18 @@ TEST(speeds_that_the_case_gives_are_no_divergence) {
 }
 
 TEST(a_body_that_crosses_itself_is_told_without_a_fluid_too) {
-    expect_warnings(SCHOOL_DEFAULTS TIME "fluid: {density: 0}\nfish: [{}]\n", 0.9, "");
-    expect_warnings(SCHOOL_DEFAULTS TIME
+    expect_warnings(TIME "fluid: {density: 0}\nfish: [{}]\n", 0.9, "");
+    expect_warnings(TIME
                     "fluid: {density: 0}\nfish: [{wave: {amplitude: 0.4, constant: 3, linear: 0, quadratic: 0,"
                     " number: 0, ramp: 1}}]\n",
                     0.9, "x");
 }
 
 TEST(separation_at_the_nose_is_told) {
-#define INCLINED(degrees, more)                                                               \
-    SCHOOL_DEFAULTS TIME "fish: [{force: pressure, pressure: {span: infinite" more            \
-                         "}, wave: {amplitude: 0, frequency: 0}, start: {speed: 1}, motion: " \
-                         "{prescribed: all, pitch: " degrees ", pitch_phase: 90}}]\n"
+#define INCLINED(degrees, more)                                               \
+    TIME "fish: [{force: pressure, pressure: {span: infinite" more            \
+         "}, wave: {amplitude: 0, frequency: 0}, start: {speed: 1}, motion: " \
+         "{prescribed: all, pitch: " degrees ", pitch_phase: 90}}]\n"
     // A_0 is about half of tan(alpha) after a tenth of a length
     expect_warnings(INCLINED("15", ""), 0.1, "");
     expect_warnings(INCLINED("30", ""), 0.1, "l");
@@ -270,22 +263,26 @@ TEST(separation_at_the_nose_is_told) {
 TEST(bodies_that_pass_through_each_other_are_told) {
     // between two rows, and between two steps: without a fluid a prescribed motion needs few
     expect_warnings(
-        "time: {end: 3, shedding_interval: 0.05}\nfluid: {density: 0}\ndefaults: {fish: {wave: {amplitude: 0}, motion: "
+        "time: {end: 3, shedding_interval: 0.05}\nfluid: {density: 0}\ndefaults: {fish: {nodes: 7, wave: {amplitude: "
+        "0}, motion: "
         "{prescribed: all, speed: 15}}}\nfish: [{name: a}, {name: b, start: {position: [-6, 0], heading: 0}}]\n",
         1, "c");
     expect_warnings(
-        "time: {end: 3, shedding_interval: 0.05}\nfluid: {density: 0}\ndefaults: {fish: {wave: {amplitude: 0}, motion: "
+        "time: {end: 3, shedding_interval: 0.05}\nfluid: {density: 0}\ndefaults: {fish: {nodes: 7, wave: {amplitude: "
+        "0}, motion: "
         "{prescribed: all, speed: 15}}}\nfish: [{name: a}, {name: b, start: {position: [-6, 1], heading: 0}}]\n",
         1, "");
     // bodies that could yield, and that the case lets pass: near each other, and through each other
-    expect_warnings(TIME
-                    "fluid: {density: 0}\ncontact: {action: warn}\ndefaults: {fish: {wave: {amplitude: 0}, body: "
-                    "{profile: uniform, thickness: 0.1}}}\nfish: [{}, {start: {position: [0, 0.119]}}]\n",
-                    0.05, "c");
-    expect_warnings(TIME
-                    "fluid: {density: 0}\ncontact: {action: warn}\ndefaults: {fish: {wave: {amplitude: 0}}}\nfish: "
-                    "[{start: {speed: 10}}, {start: {position: [-0.5, 0.5], heading: 90, speed: -10}}]\n",
-                    0.2, "c");
+    expect_warnings(
+        TIME
+        "fluid: {density: 0}\ncontact: {action: warn}\ndefaults: {fish: {nodes: 7, wave: {amplitude: 0}, body: "
+        "{profile: uniform, thickness: 0.1}}}\nfish: [{}, {start: {position: [0, 0.119]}}]\n",
+        0.05, "c");
+    expect_warnings(
+        TIME
+        "fluid: {density: 0}\ncontact: {action: warn}\ndefaults: {fish: {nodes: 7, wave: {amplitude: 0}}}\nfish: "
+        "[{start: {speed: 10}}, {start: {position: [-0.5, 0.5], heading: 90, speed: -10}}]\n",
+        0.2, "c");
 }
 
 // ---- the limits, with values of the diagnostics that no run gave
@@ -293,7 +290,7 @@ TEST(bodies_that_pass_through_each_other_are_told) {
 TEST(a_run_shorter_than_two_beats_has_no_means_of_a_cycle) {
     // the slowest fish decides
     struct simulation *simulation =
-        school_simulation(SCHOOL_DEFAULTS TIME
+        school_simulation(TIME
                           "fish: [{force: reactive, wave: {frequency: 20}}, {force: reactive, wave: {frequency: 10}, "
                           "start: {position: [0, 2]}}]\n");
     expect_line(simulation, WARNING_BEATS, NULL);  // no run
@@ -305,15 +302,14 @@ TEST(a_run_shorter_than_two_beats_has_no_means_of_a_cycle) {
     expect_line(simulation, WARNING_BEATS, NULL);
 
     // a plate that does not oscillate has no cycle
-    simulation =
-        school_simulation(SCHOOL_DEFAULTS TIME "fish: [{force: reactive, motion: {prescribed: all, speed: 1}}]\n");
+    simulation = school_simulation(TIME "fish: [{force: reactive, motion: {prescribed: all, speed: 1}}]\n");
     school_run(simulation, 0.05);
     expect_line(simulation, WARNING_BEATS, NULL);
 }
 
 TEST(the_limits_are_those_of_the_manual) {
     struct simulation *const simulation =
-        school_simulation(SCHOOL_DEFAULTS TIME
+        school_simulation(TIME
                           "fish: [{force: pressure, pressure: {span: infinite}, wave: {frequency: 0.5}}, {force: "
                           "reactive, start: {position: [0, 2]}}]\n");
     school_measure(simulation, 0.02);
@@ -366,7 +362,7 @@ TEST(the_limits_are_those_of_the_manual) {
 }
 
 TEST(the_energy_balance_is_compared_with_the_largest_work) {
-    struct simulation *const simulation = school_simulation(SCHOOL_DEFAULTS TIME "fish: [{}]\n");
+    struct simulation *const simulation = school_simulation(TIME "fish: [{}]\n");
     simulate_measure(simulation);
     struct diagnostics_fish *const now = &simulation->diagnostics->fish[0];
     double *const work = simulation->state->balance[0].work;
@@ -393,8 +389,7 @@ TEST(the_energy_balance_is_compared_with_the_largest_work) {
 
 TEST(the_advice_is_enough) {
     // 3.2/sqrt(U Dt/L) = 32: 33 points are enough, 0.9 of 32 edges are allowed, and 29 edges are the first such number
-    struct simulation *const simulation =
-        school_simulation(SCHOOL_DEFAULTS TIME "fish: [{force: reactive, sheet_points: 29}]\n");
+    struct simulation *const simulation = school_simulation(TIME "fish: [{force: reactive, sheet_points: 29}]\n");
     school_measure(simulation, 0.02);
     struct fish *const fish = &simulation->school->fish[0];
     struct diagnostics_fish *const now = &simulation->diagnostics->fish[0];
@@ -428,7 +423,7 @@ TEST(the_advice_is_enough) {
 }
 
 TEST(a_mode_is_slow_below_the_frequency_of_the_beat) {
-    struct simulation *const simulation = school_simulation(SCHOOL_DEFAULTS TIME "fish: [{}]\n");
+    struct simulation *const simulation = school_simulation(TIME "fish: [{}]\n");
     simulate_measure(simulation);
     struct fish *const fish = &simulation->school->fish[0];
     const double slowest = bending_mode_frequency(fish, simulation->residual->scratch);
@@ -442,8 +437,7 @@ TEST(a_small_gap_is_told_where_nothing_repels) {
     static const char *const actions[] = {"repel", "warn"};
     for (int warns = 0; warns < 2; warns++) {
         struct simulation *const simulation = school_simulation_of(
-            SCHOOL_DEFAULTS TIME "contact: {action: %s}\nfish: [{name: a}, {start: {position: [0, 2]}, name: b}]\n",
-            actions[warns]);
+            TIME "contact: {action: %s}\nfish: [{name: a}, {start: {position: [0, 2]}, name: b}]\n", actions[warns]);
         struct closest *const closest = simulation->state->closest;
         closest->fish[0] = 1;
         closest->fish[1] = 0;
@@ -466,8 +460,7 @@ TEST(divergence_is_a_hundred_times_the_speeds_of_the_case) {
         "frequency: 3}}]\n",
         "fish: [{length: 2, wave: {amplitude: 0, frequency: 0}, load: {tip: [30, 40]}}]\n"};
     for (int i = 0; i < 2; i++) {
-        struct simulation *const simulation =
-            school_simulation_of(SCHOOL_DEFAULTS TIME "fluid: {density: 0}\n%s", texts[i]);
+        struct simulation *const simulation = school_simulation_of(TIME "fluid: {density: 0}\n%s", texts[i]);
         simulate_measure(simulation);
         simulation->state->t = 8;
         const struct fish *const fish = &simulation->school->fish[0];
@@ -483,8 +476,7 @@ TEST(divergence_is_a_hundred_times_the_speeds_of_the_case) {
 }
 
 TEST(the_worst_divergence_of_all_events_is_kept) {
-    struct simulation *const simulation =
-        school_simulation(SCHOOL_DEFAULTS TIME "fish: [{}, {start: {position: [0, 2]}}]\n");
+    struct simulation *const simulation = school_simulation(TIME "fish: [{}, {start: {position: [0, 2]}}]\n");
     school_measure(simulation, 0.1);
     struct state *const now = simulation->state;
     double *const shed = &now->y[simulation->school->fish[1].at.circulation], kept = *shed;
@@ -510,7 +502,7 @@ TEST(the_worst_divergence_of_all_events_is_kept) {
 
 TEST(a_balance_that_is_not_finite_is_open_and_no_row) {
     static const double broken[] = {NAN, INFINITY, -INFINITY};
-    struct simulation *const simulation = school_simulation(SCHOOL_DEFAULTS TIME "fish: [{}]\n");
+    struct simulation *const simulation = school_simulation(TIME "fish: [{}]\n");
     simulate_measure(simulation);
     simulation->state->t = 1.5;
     struct diagnostics *const all = simulation->diagnostics;
@@ -539,8 +531,8 @@ TEST(a_balance_that_is_not_finite_is_open_and_no_row) {
     work[WORK_FLUID] = kept;
 
     // strips of different depths have no momentum balance
-    struct simulation *const unequal = school_simulation(
-        SCHOOL_DEFAULTS TIME "fish: [{force: reactive}, {force: reactive, start: {position: [0, 2]}}]\n");
+    struct simulation *const unequal =
+        school_simulation(TIME "fish: [{force: reactive}, {force: reactive, start: {position: [0, 2]}}]\n");
     simulate_measure(unequal);
     assert_true(isnan(unequal->diagnostics->momentum_balance[0]));
     school_ok(warnings_refuse(unequal->school, unequal->state, unequal->diagnostics));
@@ -555,7 +547,6 @@ static int warns_of_pitch_in(const char *stream, double heading, double speed, d
     // the pivot is two thirds of the chord before the tail
     const double pitch = ratio * 5.392165 / (2 * M_PI * 2 / 3) * 180 / M_PI;
     struct simulation *const simulation = school_simulation_of(
-        SCHOOL_DEFAULTS
         "time: {end: 1, shedding_interval: 0.01}\nfluid: {density: 1, viscosity: 1.348e-4, velocity: %s}\n"
         "fish: [{force: pressure, pressure: {span: infinite}, start: {heading: %g, speed: %.8g}, wave: {amplitude: 0, "
         "frequency: 0},\n  body: {profile: uniform, thickness: 0.12}, motion: {%s, pitch: %.17g, "
@@ -589,8 +580,8 @@ TEST(a_pitch_beyond_attached_flow_is_told) {
 }
 
 TEST(a_stalled_foil_is_told) {
-    struct simulation *const simulation = school_simulation(
-        SCHOOL_DEFAULTS TIME "fish: [{motion: {prescribed: all, surge: free, heave: 0.1, frequency: 1}}]\n");
+    struct simulation *const simulation =
+        school_simulation(TIME "fish: [{motion: {prescribed: all, surge: free, heave: 0.1, frequency: 1}}]\n");
     school_run(simulation, 0.02);
     static const struct {
         double drift, share;

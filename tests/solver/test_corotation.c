@@ -6,12 +6,10 @@
 #include "school.h"
 #include "solver/corotation.h"
 
-const bool school_small = true;
-
 static const char *const text =
-    "time: {end: 1}\nwake: {shedding: sheet}\nsheet: {curve: smooth}\nfish:\n  - {nodes: 6, sheet_points: 7}\n"
-    "  - {nodes: 4, sheet_points: 5, start: {position: [0, 2]}, motion: {prescribed: head, heave: 0.1, frequency: 1}}\n"
-    "  - {nodes: 9, sheet_points: 18, length: 0.6, force: pressure, pressure: {span: infinite}, start: {position: [2, "
+    "time: {end: 1}\ndefaults: {fish: {pressure: {span: infinite}}}\nfish:\n  - {nodes: 6, sheet_points: 11}\n"
+    "  - {nodes: 4, sheet_points: 7, start: {position: [0, 2]}, motion: {prescribed: head, heave: 0.1, frequency: 1}}\n"
+    "  - {nodes: 9, sheet_points: 18, length: 0.6, start: {position: [2, "
     "1], heading: 30}}\n";
 
 enum { MAX_NODES = 9 };
@@ -141,7 +139,7 @@ TEST(a_rigid_motion_is_mapped_to_a_rigid_motion) {
             const double scale = sqrt(size / product(fish, want, want));
             for (int i = 0; i < 2 * fish->n_nodes; i++) want[i] *= scale;
             NEAR(scale, 1, which < 2 ? 1e-14 : 0.1, 0);
-            NEAR_ARRAY(2 * fish->n_nodes, got, want, 1e-14, 0);
+            NEAR_ARRAY(2 * fish->n_nodes, got, want, 2e-14, 0);  // rounding of places up to 4 m from the origin
         }
     }
 }

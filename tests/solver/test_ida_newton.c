@@ -4,8 +4,6 @@
 #include "school.h"
 #include "solver/ida_newton.h"
 
-const bool school_small = true;
-
 /* The equations y - root + bend (y - root)^2 = 0 for each unknown by itself; the Jacobian that the solver gets is that
  * at the last set-up, times 1 / (1 - wrong): each iteration leaves the fraction wrong of the error. */
 struct problem {
@@ -93,7 +91,7 @@ static struct problem *pose(double updated, int is_periodic) {
     struct problem *problem;
     NEW(test_arena(), problem, 1);
     *problem = (struct problem){.root = 1, .coefficient = 100, .updated = updated, .is_periodic = is_periodic};
-    school_build(&problem->setup, "time: {end: 1}\nfish: [{nodes: 4, sheet_points: 5}]\n");
+    school_build(&problem->setup, "time: {end: 1}\nfish: [{nodes: 4, sheet_points: 7, body: {depth: 1}}]\n");
     const int n = problem->setup.school->n_unknowns;
     sundials_context_create(&problem->context, problem->setup.arena, n, 1, &problem->failure);
     problem->predicted = sundials_context_vector(&problem->context, NULL);

@@ -6,40 +6,38 @@
 #include "fish/fish_motion.h"
 #include "school.h"
 
-const bool school_small = true;
-
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
-#define FISH "fish: [{sheet_points: 11}]\n"
+#define SMALL TIME "defaults: {fish: {nodes: 7}}\n"
+#define FISH "fish: [{sheet_points: 13, body: {depth: 1}}]\n"
 
 static const char *const texts[] = {
-    TIME FISH,
-    TIME "sheet: {kutta: rate}\n" FISH,
-    TIME "sheet: {kutta: rate, kutta_ramp: 0.5, collocation: midpoint}\n" FISH,
-    TIME "wake: {removed_circulation: dropped, decay: 0}\nsheet: {collocation: midpoint}\n" FISH,
-    TIME "wake: {shedding: impulsive}\n" FISH,
-    TIME "sheet: {curve: smooth}\n" FISH,
-    TIME "preset: published\n" FISH,
-    TIME
+    SMALL FISH, SMALL "wake: {shedding: continuous}\nsheet: {kutta: rate}\n" FISH,
+    SMALL "wake: {shedding: continuous}\nsheet: {kutta: rate, collocation: midpoint}\n" FISH,
+    SMALL "wake: {shedding: continuous, removed_circulation: dropped, decay: 0}\nsheet: {collocation: midpoint}\n" FISH,
+    SMALL "wake: {shedding: impulsive}\n" FISH, SMALL "sheet: {curve: polygon}\n" FISH,
+    TIME "preset: published\nfish: [{sheet_points: 11}]\n",
+    SMALL
     "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
-    "fish: [{control: {law: heading, desired_heading: 150}, drag: {law: linear_quadratic}, added_mass: {extent: "
-    "depth}}]\n",
-    TIME "fish: [{control: {law: averaged_heading, waypoints: [[-3, 1]]}, wave: {ramp: 0}}]\n",
-    TIME "fish: [{motion: {prescribed: head, heave: 0.1, pitch: 10, frequency: 1}, load: {tip: [1, 2]}}]\n",
-    TIME "fish: [{motion: {prescribed: all, heave: 0.1, pitch: 10, frequency: 1}}]\n",
-    TIME "fluid: {density: 0}\n" FISH,
-    TIME "fish: [{body: {modulus: 1.0e+10}}]\n",
+    "fish: [{control: {law: heading, desired_heading: 150}}]\n",
+    SMALL "fish: [{control: {law: averaged_heading, waypoints: [[-3, 1]]}, wave: {ramp: 0}}]\n",
+    SMALL "fish: [{motion: {prescribed: head, heave: 0.1, pitch: 10, frequency: 1}, load: {tip: [1, 2]}}]\n",
+    SMALL "fish: [{motion: {prescribed: all, heave: 0.1, pitch: 10, frequency: 1}}]\n",
+    SMALL "fluid: {density: 0}\nwake: {shedding: continuous}\n" FISH,
+    // nothing depends on accelerations beside momenta, which keep the rounding of elastic forces
+    SMALL "wake: {shedding: continuous}\nfish: [{body: {modulus: 1.0e+10}}]\n",
     TIME
     "wake: {shedding: sheet}\nsheet: {curve: smooth}\nfish:\n"
     "  - {nodes: 7, sheet_points: 13, force: pressure, pressure: {span: infinite}}\n"
     "  - {nodes: 6, sheet_points: 13, force: reactive, start: {position: [0, 0.7]}}\n"
     "  - {nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}, start: {position: [0, -0.7]},\n"
     "     motion: {prescribed: head, heave: 0.1, pitch: 10, frequency: 1}}\n",
-    TIME
-    "fish: [{}, {nodes: 5, length: 0.7, start: {position: [0.2, 0.5]}}, {nodes: 9, start: {position: [0, -0.6]}}]\n"};
+    SMALL
+    "contact: {action: warn}\nfish: [{}, {nodes: 5, length: 0.7, start: {position: [0.2, 0.5]}}, {nodes: 9, start: "
+    "{position: [0, -0.6]}}]\n"};
 
 /* Newton's iteration with a Jacobian without the blocks that couple these fish. */
 static const char uncoupled[] =
-    TIME "solver: {coupling_distance: 0}\nfish: [{}, {nodes: 5, start: {position: [0.2, 0.5]}}]\n";
+    SMALL "solver: {coupling_distance: 0}\nfish: [{}, {nodes: 5, start: {position: [0.2, 0.5]}}]\n";
 
 static void check_residual(struct setup *setup, double t, const char *text) {
     const int n = setup->school->n_unknowns;
@@ -101,7 +99,7 @@ TEST(all_equations_hold_again_from_any_state) {
 }
 
 TEST(differential_unknowns_stay_as_they_are) {
-    struct setup setup = setup_stirred(TIME "sheet: {kutta: rate}\n" FISH);
+    struct setup setup = setup_stirred(SMALL "wake: {shedding: continuous}\nsheet: {kutta: rate}\n" FISH);
     double *const kind = test_array(setup.school->n_unknowns);
     double *const before = test_copy(setup.school->n_unknowns, setup.state->y);
     residual_kinds(setup.residual, &residual_run, kind);
@@ -147,12 +145,11 @@ TEST(stiffness_takes_no_iterations_where_momenta_are_kept) {
     // the equations are linear but for the rounding of elastic forces in accelerations, on which nothing depends
     static const char *const moduli[] = {"1.0e+6", "1.0e+10", "1.0e+13"};
     for (int i = 0; i < 3; i++) {
-        struct simulation *const simulation =
-            school_simulation_of(SCHOOL_DEFAULTS
-                                 "time: {end: 1, shedding_interval: 0.01}\n"
-                                 "fish: [{force: pressure, pressure: {span: infinite}, body: {modulus: %s}, wave: "
-                                 "{ramp: 0}, start: {speed: 1},\n        motion: {prescribed: head}}]\n",
-                                 moduli[i]);
+        struct simulation *const simulation = school_simulation_of(
+            "time: {end: 1, shedding_interval: 0.01}\n"
+            "fish: [{force: pressure, pressure: {span: infinite}, body: {modulus: %s}, wave: "
+            "{ramp: 0}, start: {speed: 1},\n        motion: {prescribed: head}}]\n",
+            moduli[i]);
         assert_in_range(initial_conditions_iterations(simulation->consistent), 1, 2);
     }
 }
@@ -161,18 +158,17 @@ TEST(light_bodies_take_no_iterations_either) {
     // the momentum over the mass is many times the velocity
     static const char *const densities[] = {"1.0e+3", "1.0e-1", "1.0e-5"};
     for (int i = 0; i < 3; i++) {
-        struct simulation *const simulation =
-            school_simulation_of(SCHOOL_DEFAULTS
-                                 "time: {end: 1, shedding_interval: 0.01}\n"
-                                 "fish: [{force: pressure, pressure: {span: infinite}, body: {density: %s}, wave: "
-                                 "{ramp: 0}, start: {speed: 1},\n        motion: {prescribed: head}}]\n",
-                                 densities[i]);
+        struct simulation *const simulation = school_simulation_of(
+            "time: {end: 1, shedding_interval: 0.01}\n"
+            "fish: [{force: pressure, pressure: {span: infinite}, body: {density: %s}, wave: "
+            "{ramp: 0}, start: {speed: 1},\n        motion: {prescribed: head}}]\n",
+            densities[i]);
         assert_in_range(initial_conditions_iterations(simulation->consistent), 1, 2);
     }
 }
 
 TEST(a_second_solution_changes_nothing) {
-    struct setup setup = setup_stirred(TIME FISH);
+    struct setup setup = setup_stirred(SMALL FISH);
     struct initial_conditions *const solver = school_consistent(&setup, setup.t);
     double *const before = test_copy(setup.school->n_unknowns, setup.state->y);
     school_ok(initial_conditions_solve(solver, &residual_run, setup.t, setup.state->y, setup.state->yp));
@@ -181,7 +177,7 @@ TEST(a_second_solution_changes_nothing) {
 }
 
 TEST(a_state_that_is_not_a_number_is_refused_and_kept) {
-    struct setup setup = setup_stirred(TIME FISH);
+    struct setup setup = setup_stirred(SMALL FISH);
     struct initial_conditions *solver;
     school_ok(initial_conditions_create(test_arena(), &solver, setup.residual));
     const struct fish *fish = setup.school->fish;
@@ -198,7 +194,7 @@ TEST(a_state_that_is_not_a_number_is_refused_and_kept) {
 }
 
 TEST(a_singular_jacobian_is_named) {
-    struct setup setup = setup_of(TIME "fish: [{name: nemo, sheet_points: 11}]\n");
+    struct setup setup = setup_of(SMALL "fish: [{name: nemo, sheet_points: 13, body: {depth: 1}}]\n");
     // Kelvin's theorem without circulations, and its residual
     struct fish *fish = setup.school->fish;
     for (int j = 0; j < fish->n_sheet; j++) fish->sheet_weight[j] = 0;
@@ -212,7 +208,7 @@ TEST(a_singular_jacobian_is_named) {
 }
 
 TEST(a_rate_that_is_not_a_number_does_not_matter) {
-    struct setup setup = setup_of(TIME FISH);
+    struct setup setup = setup_of(SMALL FISH);
     const struct fish *fish = setup.school->fish;
     setup.state->yp[fish->at.x + 1] = NAN;
     school_consistent(&setup, 0);

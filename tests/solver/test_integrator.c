@@ -4,8 +4,6 @@
 #include "school.h"
 #include "solver/integrator.h"
 
-const bool school_small = true;
-
 static const char two_fish[] =
     "time: {end: 1}\nwake: {shedding: sheet}\nsheet: {curve: smooth}\n"
     "fish: [{nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}}, {nodes: 5, sheet_points: 9, "
@@ -56,13 +54,13 @@ TEST(rates_of_parabolas_are_exact_from_the_second_step_on) {
 // ---- every row of the table of methods can be integrated
 
 /* For every method, for those of a rod alone, and for those with the added mass in momenta. */
-static const char soft[] = "fish: [{body: {modulus: 1.0e+4}, wave: {ramp: 0}}]\n";
+static const char soft[] =
+    "wake: {shedding: continuous}\nfish: [{nodes: 7, body: {modulus: 1.0e+4}, wave: {ramp: 0}, start: {speed: 1}}]\n";
 static const char rod_alone[] =
     "fluid: {density: 0}\nwake: {tolerance: 0}\n"
-    "fish: [{body: {modulus: 1.0e+4, relaxation_time: 0, bending_damping: 0, "
-    "stretching_damping: 0}, wave: {ramp: 0.1}}]\n";
-static const char with_momenta[] =
-    "wake: {shedding: sheet}\nsheet: {curve: smooth}\nfish: [{nodes: 9, force: pressure, wave: {ramp: 0}}]\n";
+    "fish: [{nodes: 7, force: reactive, body: {modulus: 1.0e+4, relaxation_time: 0, bending_damping: 0, "
+    "stretching_damping: 0}, wave: {amplitude: 1, ramp: 0.1}}]\n";
+static const char with_momenta[] = "fish: [{nodes: 9, wave: {amplitude: 1, ramp: 0}, start: {speed: 1}}]\n";
 
 TEST(methods_have_their_integrators) {
     assert_ptr_equal(integrator_of(METHOD_IDA), &ida_integrator);

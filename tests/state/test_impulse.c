@@ -4,9 +4,8 @@
 #include "school.h"
 #include "state/state.h"
 
-const bool school_small = true;
-
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+#define SMALL TIME "defaults: {fish: {nodes: 7}}\n"
 
 TEST(impulses_are_those_of_point_vortices) {
     struct impulse_moments sum = {0};
@@ -28,6 +27,7 @@ TEST(impulses_are_those_of_point_vortices) {
 TEST(a_depth_that_varies_is_none) {
     struct setup setup = setup_of(
         TIME
+        "defaults: {fish: {pressure: {span: infinite}}}\n"
         "fish:\n  - {length: 2, body: {depth: 0.3}}\n"
         "  - {nodes: 5, start: {position: [3, 3]}, body: {profile: table, thickness_table: [0.1, 0.2, 0.15, 0.05],\n"
         "     depth_table: [0.2, 0.3, 0.25, 0.1]}}\n");
@@ -78,7 +78,7 @@ TEST(what_fades_or_is_removed_is_booked_where_it_is) {
                                         "shedding: continuous, decay: 0", "shedding: impulsive, decay: 0"};
     for (size_t w = 0; w < sizeof wakes / sizeof *wakes; w++) {
         char text[256];
-        snprintf(text, sizeof text, TIME "wake: {lifetime: 0.3, %s}\nfish: [{}]\n", wakes[w]);
+        snprintf(text, sizeof text, SMALL "wake: {lifetime: 0.3, %s}\nfish: [{force: reactive}]\n", wakes[w]);
         ABOVE(fabs(wither(text)), 1e-3);
     }
 }
@@ -90,7 +90,9 @@ TEST(what_is_dropped_goes_to_the_tail) {
     for (int w = 0; w < 2; w++) {
         char text[256];
         snprintf(text, sizeof text,
-                 TIME "wake: {lifetime: 0.3, decay: 0.2, removed_circulation: dropped, shedding: %s}\nfish: [{}]\n",
+                 SMALL
+                 "wake: {lifetime: 0.3, decay: 0.2, removed_circulation: dropped, shedding: %s}\nfish: [{force: "
+                 "reactive, sheet_points: 21}]\n",
                  wakes[w]);
         struct setup setup = setup_stirred(text);
         const struct fish *const fish = &setup.school->fish[0];

@@ -7,12 +7,11 @@
 #include "school.h"
 #include "state/state.h"
 
-const bool school_small = true;
-
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+#define SMALL TIME "defaults: {fish: {nodes: 7}}\n"
 
 TEST(state_before_the_start_is_placed_and_empty) {
-    struct setup setup = setup_of(TIME "fish: [{start: {heading: 90}}, {start: {position: [1, 2]}}]\n");
+    struct setup setup = setup_of(SMALL "fish: [{start: {heading: 90}}, {start: {position: [1, 2]}}]\n");
     const struct state *start = setup.state;
     NEAR(start->t, 0, 0, 0);
     assert_int_equal(start->event, 0);
@@ -29,7 +28,7 @@ TEST(state_before_the_start_is_placed_and_empty) {
 }
 
 TEST(a_fish_without_a_beat_remembers_one_sample) {
-    struct setup setup = setup_of(TIME "fish: [{wave: {frequency: 0}}]\n");
+    struct setup setup = setup_of(SMALL "fish: [{wave: {frequency: 0}}]\n");
     assert_int_equal(setup.state->history[0].capacity, 1);
     for (int i = 1; i <= 3; i++) {
         const struct sample sample = {.heading = i};
@@ -43,7 +42,7 @@ TEST(a_fish_without_a_beat_remembers_one_sample) {
 TEST(a_beat_of_whole_intervals_is_rounded_to_them) {
     // 0.3/0.1 is below 3
     struct setup setup = setup_of(
-        "time: {end: 1, shedding_interval: 0.1, output_interval: 0.1}\nfish: [{wave: {frequency: "
+        "time: {end: 1, shedding_interval: 0.1, output_interval: 0.1}\nfish: [{nodes: 7, wave: {frequency: "
         "3.3333333333333335}}]\n");
     BELOW(setup.school->fish[0].period / setup.school->interval, 3);
     assert_int_equal(setup.state->history[0].capacity, 4);
@@ -52,7 +51,8 @@ TEST(a_beat_of_whole_intervals_is_rounded_to_them) {
 TEST(samples_take_memory_for_the_events_of_the_run) {
     // a beat of 1e6 s has 1e8 events of 0.01 s, of which a run has twenty
     struct setup setup = setup_of(
-        "time: {end: 0.2, shedding_interval: 0.01, output_interval: 0.01}\nfish: [{wave: {frequency: 1e-6}}]\n");
+        "time: {end: 0.2, shedding_interval: 0.01, output_interval: 0.01}\nfish: [{nodes: 7, wave: {frequency: "
+        "1e-6}}]\n");
     struct history *const history = &setup.state->history[0];
     assert_int_equal(history->n_slots, 0);
     assert_in_range(history->capacity, 10000000, 10000001);
@@ -64,7 +64,8 @@ TEST(samples_take_memory_for_the_events_of_the_run) {
     for (int age = 0; age < 20; age++) NEAR(state_recall(history, age)->heading, 20 - age, 0, 0);
 
     // a school of one period: never more than the samples of the period and one
-    struct setup period = setup_of("time: {end: 2, shedding_interval: 0.02, output_interval: 0.02}\nfish: [{}]\n");
+    struct setup period =
+        setup_of("time: {end: 2, shedding_interval: 0.02, output_interval: 0.02}\nfish: [{nodes: 7}]\n");
     for (int n = 1; n <= 200; n++) {
         state_reserve(period.state, period.school);
         state_remember(&period.state->history[0], &(struct sample){.heading = -1});
@@ -77,7 +78,7 @@ TEST(samples_take_memory_for_the_events_of_the_run) {
 }
 
 TEST(a_kept_state_returns_without_a_copy_of_the_samples) {
-    struct setup setup = setup_of("time: {end: 2, shedding_interval: 0.2, output_interval: 0.2}\nfish: [{}]\n");
+    struct setup setup = setup_of("time: {end: 2, shedding_interval: 0.2, output_interval: 0.2}\nfish: [{nodes: 7}]\n");
     struct state *const before = state_create(NULL, setup.school);
     struct history *const history = &setup.state->history[0];
     for (int n = 1; n <= 40; n++) {
@@ -349,7 +350,7 @@ TEST(indices_that_no_run_has_are_refused) {
                            &s->history[0].last,     &s->balance[1].n,        &s->balance[1].n,
                            &s->control[1].waypoint, &s->control[0].waypoint, &s->wake[1].has_markers,
                            &s->closest->fish[0],    &s->closest->fish[1]};
-    const int wrong[] = {0, s->history[1].capacity + 1, -1, s->history[0].n_slots, -1, 3, -1, 1, 1, -1, 2};
+    const int wrong[] = {0, s->history[1].capacity + 1, -1, s->history[0].n_slots, -1, 3, -1, 1, 0, -1, 2};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         const int right = *fields[i];
         *fields[i] = wrong[i];

@@ -8,8 +8,6 @@
 #include "school/rigid.h"
 #include "steady_setup.h"
 
-const bool school_small = true;
-
 // mean speed, and change of the heading, over the last of some beats of a run
 struct brute {
     double speed, turn; /* m s-1, rad */
@@ -45,9 +43,10 @@ TEST(speed_and_multiplier_are_those_of_a_long_run) {
 /* The steps between two events are limited so that a beat fails after a large increment of the speed, but no beat of a
  * run. */
 TEST(a_beat_that_fails_after_an_increment_is_repeated_after_a_smaller_one) {
-#define LIMITED(max_steps)                                                                    \
-    SCHOOL_DEFAULTS "time: {end: 1, shedding_interval: 0.05}\nsolver: {max_steps: " max_steps \
-                    "}\nfish: [{force: reactive, nodes: 9}]\n"
+#define LIMITED(max_steps)                                                    \
+    "time: {end: 1, shedding_interval: 0.05}\nsolver: {max_steps: " max_steps \
+    "}\nfish: [{force: reactive, nodes: "                                     \
+    "9}]\n"
     struct steady_setup limited, free;
     steady_setup_open(&limited, LIMITED("19"));
     school_ok(steady_search_run(&limited.problem));
@@ -59,7 +58,7 @@ TEST(a_beat_that_fails_after_an_increment_is_repeated_after_a_smaller_one) {
 
 // a plate with a part of the leading-edge suction of attached flow; a slower plate loses more suction
 TEST(a_plate_with_limited_suction_has_the_speed_of_a_long_run) {
-    static const char text[] = SCHOOL_DEFAULTS
+    static const char text[] =
         "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"
         "fluid: {density: 1, viscosity: 1.25e-3}\nsteady: {tolerance: 5e-5}\n"
         "fish: [{nodes: 5, sheet_points: 17, force: pressure, pressure: {span: infinite, suction_limit: 0.14}, start: "
@@ -546,10 +545,10 @@ TEST(the_balance_of_momentum_begins_with_the_rows_and_is_kept) {
     struct steady_setup setup;
     struct state *kept = NULL;
     double searched[3], first[3], again[3];
-    steady_setup_open(
-        &setup, COARSE
-        "steady: {tolerance: 1e-3}\n"
-        "fish: [{nodes: 7, sheet_points: 13, force: pressure, pressure: {span: infinite}, start: {speed: 0.3}}]\n");
+    steady_setup_open(&setup, COARSE
+                      "steady: {tolerance: 1e-3}\n"
+                      "fish: [{nodes: 7, sheet_points: 13, pressure: {span: infinite}, body: {thickness: 0.2, depth: "
+                      "0.25}, start: {speed: 0.3}}]\n");
     school_ok(steady_search_run(&setup.problem));
     struct steady_map *const map = &setup.problem.map;
     struct simulation *const simulation = map->simulation;

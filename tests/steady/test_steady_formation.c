@@ -1,11 +1,8 @@
 /* test_steady_formation.c: stable places of fish in a formation. doc/steady.md. */
 #include "steady_setup.h"
 
-const bool school_small = true;
-
 // two heaving plates, from this initial place of the follower
 #define PLATES                                                                                                   \
-    SCHOOL_DEFAULTS                                                                                              \
     "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"                                           \
     "fluid: {density: 1, viscosity: 2e-3}\nwake: {lifetime: 3, smoothing: 0.2}\n"                                \
     "steady: {formation: true, tolerance: 3e-3}\n"                                                               \
@@ -115,12 +112,14 @@ TEST(a_follower_of_a_held_leader_takes_its_speed) {
 TEST(from_between_two_places_it_goes_where_the_fish_would) {
     struct steady_setup setup;
     // the thrust is largest near this place: Newton's method alone moves the fish apart until the interaction vanishes
-    steady_setup_open(&setup, SCHOOL_DEFAULTS
-                      "time: {end: 1, shedding_interval: 0.025, output_interval: 0.025}\n"
-                      "steady: {formation: true, tolerance: 3e-4}\nwake: {lifetime: 2, decay: 0.2}\n"
-                      "defaults: {fish: {force: reactive, nodes: 13, sheet_points: 25, start: {speed: 0.75},\n"
-                      "  control: {law: heading, desired_heading: 180}}}\n"
-                      "fish: [{}, {start: {position: [1.75, 0.1]}}]\n");
+    steady_setup_open(
+        &setup,
+        "time: {end: 1, shedding_interval: 0.025, output_interval: 0.025}\n"
+        "solver: {rtol: 1e-5}\nsteady: {formation: true, tolerance: 3e-4}\nwake: {lifetime: 2, decay: 0.2}\n"
+        "defaults: {fish: {force: reactive, nodes: 13, sheet_points: 25, body: {thickness: 0.2, depth: 0.25, modulus: "
+        "1e6}, start: {speed: 0.75},\n"
+        "  control: {law: heading, desired_heading: 180}}}\n"
+        "fish: [{}, {start: {position: [1.75, 0.1]}}]\n");
     school_ok(steady_search_run(&setup.problem));
     const double *const place = setup.problem.map.last[1].place;
     NEAR(place[0], -1.55, 0.05, 0);
@@ -140,8 +139,9 @@ TEST(where_no_formation_is_found_the_reason_is_what_the_fish_do) {
     // the search leaves the start, returns and fails before steady.beats
     steady_setup_fails(COARSE
                        "steady: {formation: true, tolerance: 1e-3}\n"
-                       "wake: {lifetime: 2, decay: 0.2}\ndefaults: {fish: {" FISH
-                       ", start: {speed: 0.75}, control: {law: heading, desired_heading: 180}}}\n"
+                       "solver: {rtol: 1e-5}\nwake: {lifetime: 2, decay: 0.2}\ndefaults: {fish: {" FISH
+                       ", body: {thickness: 0.2, depth: 0.25, modulus: 1e6}, start: {speed: 0.75}, control: {law: "
+                       "heading, desired_heading: 180}}}\n"
                        "fish: [{name: a}, {name: b, start: {position: [1, 0.3]}}]\n",
                        STATUS_SOLVER, "beats near the start: collision: after release, a and b approach to");
     // fish side by side separate

@@ -7,8 +7,6 @@
 #include "school.h"
 #include "steady/steady_problem.h"
 
-const bool school_small = true;
-
 enum { MOST = 2 * STEADY_QUANTITIES };
 
 struct found {
@@ -45,7 +43,7 @@ static int nearest(const struct found *found, double omega) {
     "force: pressure, pressure: {span: infinite}, wave: {amplitude: 0, frequency: 0}, motion: {prescribed: head}, "
 
 TEST(without_water_they_are_those_of_a_clamped_beam) {
-    static const char text[] = SCHOOL_DEFAULTS
+    static const char text[] =
         "time: {end: 1, shedding_interval: 0.01}\nfluid: {density: 1e-9, velocity: [1, 0], viscosity: 0}\n"
         "wake: {lifetime: 2}\n"
         "fish: [{nodes: 33, " CLAMPED PLATE "relaxation_time: 0.02}, start: {heading: 180, speed: 0}}]\n";
@@ -63,7 +61,7 @@ TEST(without_water_they_are_those_of_a_clamped_beam) {
 
 // modes that decay alike, here not at all, differ by their frequencies
 TEST(modes_without_damping_are_told_apart) {
-    static const char text[] = SCHOOL_DEFAULTS
+    static const char text[] =
         "time: {end: 1, shedding_interval: 0.02}\nfluid: {density: 1e-9, velocity: [1, 0], viscosity: 0}\n"
         "wake: {lifetime: 1}\nfish: [{nodes: 17, sheet_points: 33, " CLAMPED PLATE
         "relaxation_time: 0}, start: {heading: 180, speed: 0}}]\n";
@@ -79,7 +77,6 @@ TEST(modes_without_damping_are_told_apart) {
 }
 
 #define STREAM(velocity)                         \
-    SCHOOL_DEFAULTS                              \
     "time: {end: 40, shedding_interval: 0.04}\n" \
     "fluid: {density: 1, velocity: " velocity    \
     ", viscosity: 0}\n"                          \
@@ -131,7 +128,6 @@ TEST(they_do_not_depend_on_who_moves) {
 static void find_in_wake(struct found *found, const char *flag, const char *wake) {
     char text[1024];
     snprintf(text, sizeof text,
-             SCHOOL_DEFAULTS
              "time: {end: 1, shedding_interval: 0.04}\n"
              "fluid: {density: 1, velocity: [1, 0], viscosity: 0}\nwake: {%s}\n"
              "fish: [{%sstart: {heading: 180, speed: 0}}]\n",
@@ -185,7 +181,6 @@ TEST(what_has_no_stiffness_left_diverges) {
         char text[1024];
         struct found found;
         snprintf(text, sizeof text,
-                 SCHOOL_DEFAULTS
                  "time: {end: 1, shedding_interval: 0.05}\nfluid: {density: 1, velocity: [-%g, 0]}\n"
                  "wake: {lifetime: 20}\nfish: [{force: reactive, nodes: 9, sheet_points: 17, wave: {amplitude: 0, "
                  "frequency: 0}, motion: {prescribed: head}, drag: {tangential: 0}, " PLATE

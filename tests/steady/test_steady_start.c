@@ -9,8 +9,6 @@
 #include "school.h"
 #include "steady/steady_problem.h"
 
-const bool school_small = true;
-
 #define TIME "time: {end: 1, shedding_interval: 0.02}\n"
 enum { N_FISH = 2, N_NODES = 5 };
 
@@ -76,10 +74,9 @@ TEST(followers_keep_their_places_in_the_frame_of_the_first_fish) {
 // an arc of a body that is twice as long and points elsewhere, as an arc behind the prescribed first edge
 TEST(shapes_are_turned_and_scaled_to_the_first_edge) {
     const double turn = 0.3, first = 2.1;
-    struct setup setup =
-        setup_of(TIME
-                 "fish: [{nodes: 5, sheet_points: 9, wave: {amplitude: 0}, start: {position: [1, 2], heading: 160},\n"
-                 "        motion: {prescribed: head}}]\n");
+    struct setup setup = setup_of(TIME
+                                  "fish: [{nodes: 5, wave: {amplitude: 0}, start: {position: [1, 2], heading: 160},\n"
+                                  "        motion: {prescribed: head}}]\n");
     const struct fish *const fish = setup.school->fish;
     double nodes[2 * N_NODES] = {7, -3}, direction[2], rate;
     for (int k = 1; k < N_NODES; k++) {
@@ -107,7 +104,7 @@ TEST(a_file_of_other_bodies_is_refused) {
     assert_null(found);
     assert_non_null(strstr(status_message(), "does not contain a steady state of 2 fish"));
 
-    struct setup setup = setup_of(TIME "fish: [{nodes: 7, sheet_points: 13, motion: {prescribed: head}}]\n");
+    struct setup setup = setup_of(TIME "fish: [{nodes: 7, motion: {prescribed: head}}]\n");
     assert_int_equal(steady_start_shapes(test_arena(), path, setup.school, setup.state->y), STATUS_FILE);
     assert_non_null(strstr(status_message(), "does not have 7 nodes"));
 
@@ -119,7 +116,7 @@ TEST(a_file_of_other_bodies_is_refused) {
             longer[2 * k + 1] = is_padded && k >= 4 ? (double)NAN : 0;
         }
         put_state(1, 0, (double[]){1}, longer);
-        school_build(&setup, TIME "fish: [{nodes: 4, sheet_points: 7, motion: {prescribed: head}}]\n");
+        school_build(&setup, TIME "fish: [{nodes: 4, motion: {prescribed: head}}]\n");
         const enum status status = steady_start_shapes(test_arena(), path, setup.school, setup.state->y);
         assert_int_equal(status, is_padded ? STATUS_OK : STATUS_FILE);
         if (!is_padded) assert_non_null(strstr(status_message(), "does not have 4 nodes"));

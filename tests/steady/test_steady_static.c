@@ -9,8 +9,6 @@
 #include "school.h"
 #include "steady/steady_problem.h"
 
-const bool school_small = true;
-
 #define TIME "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"
 #define PLATE                              \
     "wave: {amplitude: 0, frequency: 0}, " \
@@ -43,12 +41,12 @@ static void is_where_a_run_ends(const struct answer *answer, const char *text, d
 }
 
 TEST(a_run_with_damping_comes_to_it) {
-    static const char pressure[] = SCHOOL_DEFAULTS TIME
+    static const char pressure[] = TIME
         "fluid: {density: 1, velocity: [0.3, 0], viscosity: 0}\nwake: {lifetime: 20}\nfish: [{" BODY
         ", motion: {prescribed: head, speed: 0}, force: pressure, pressure: {span: infinite}, start: {heading: 170, "
         "speed: 0}}]\n";
     // across the stream: the body bends by half of the length
-    static const char across[] = SCHOOL_DEFAULTS TIME
+    static const char across[] = TIME
         "fluid: {density: 1, velocity: [0.5, 0]}\nwake: {lifetime: 5}\n"
         "fish: [{" HEAD ", added_mass: {coefficient: 0}, start: {heading: 270, speed: 0}, load: {tip: [0, 0.002]}}]\n";
     struct answer found;
@@ -67,10 +65,10 @@ TEST(a_run_with_damping_comes_to_it) {
 // Helmbold's lift at AR 1 is 0.236 of two dimensions; no modes
 TEST(a_body_of_finite_span_has_legs_to_infinity) {
     struct answer found;
-    answer(&found, SCHOOL_DEFAULTS TIME
-           "fluid: {density: 1, velocity: [1, 0], viscosity: 0}\nfish: [{" BODY
-           ", force: pressure, pressure: {span: finite, suction_limit: 0}, start: {heading: 179, speed: 0},"
-           " motion: {prescribed: all, speed: 0}}]\n");
+    answer(&found,
+           TIME "fluid: {density: 1, velocity: [1, 0], viscosity: 0}\nfish: [{" BODY
+                ", force: pressure, pressure: {span: finite, suction_limit: 0}, start: {heading: 179, speed: 0},"
+                " motion: {prescribed: all, speed: 0}}]\n");
     school_ok(found.status);
     BELOW(found.values.residual, 1e-10);
     const double angle = 3.14159265358979323846 / 180;
@@ -101,10 +99,10 @@ TEST(a_body_of_finite_span_has_legs_to_infinity) {
 
 TEST(forces_are_those_along_and_across_the_stream) {
     struct answer found;
-    answer(&found, SCHOOL_DEFAULTS TIME
-           "fluid: {density: 1, velocity: [0, 2], viscosity: 0}\nfish: [{" BODY
-           ", force: pressure, pressure: {span: infinite, suction_limit: 0}, start: {heading: 260, speed: 0},"
-           " motion: {prescribed: all, speed: 0}}]\n");
+    answer(&found,
+           TIME "fluid: {density: 1, velocity: [0, 2], viscosity: 0}\nfish: [{" BODY
+                ", force: pressure, pressure: {span: infinite, suction_limit: 0}, start: {heading: 260, speed: 0},"
+                " motion: {prescribed: all, speed: 0}}]\n");
     school_ok(found.status);
     // 2 pi sin(alpha), to the left of the stream; no drag
     NEAR(found.fish[0].lift, 3.14159265358979 * 4 * sin(0.17453292519943295), 0, 4e-3);
@@ -122,9 +120,9 @@ TEST(forces_on_a_carried_body_are_those_in_the_relative_stream) {
         const double angle = heading * 3.14159265358979323846 / 180, carried = i * speed;
         char text[800];
         snprintf(text, sizeof text,
-                 SCHOOL_DEFAULTS TIME "fluid: {density: 1, velocity: [%.17g, %.17g], viscosity: 0}\nfish: [{" BODY
-                                      ", force: pressure, pressure: {span: finite, suction_limit: 0},"
-                                      " start: {heading: %g, speed: 0}, motion: {prescribed: all, speed: %g}}]\n",
+                 TIME "fluid: {density: 1, velocity: [%.17g, %.17g], viscosity: 0}\nfish: [{" BODY
+                      ", force: pressure, pressure: {span: finite, suction_limit: 0},"
+                      " start: {heading: %g, speed: 0}, motion: {prescribed: all, speed: %g}}]\n",
                  1 + carried * cos(angle), -0.4 + carried * sin(angle), heading, carried);
         answer(&found[i], text);
         school_ok(found[i].status);
@@ -140,10 +138,9 @@ TEST(forces_on_a_carried_body_are_those_in_the_relative_stream) {
 }
 
 // a flag with the clamp downstream is a column under the load pi/4 rho U^2 of slender bodies: Euler buckling
-#define REVERSED                                    \
-    SCHOOL_DEFAULTS TIME                            \
-        "fluid: {density: 1, velocity: [-%g, 0]}\n" \
-        "fish: [{" HEAD ", drag: {tangential: 0}, start: {heading: 180, speed: 0}}]\n"
+#define REVERSED                                     \
+    TIME "fluid: {density: 1, velocity: [-%g, 0]}\n" \
+         "fish: [{" HEAD ", drag: {tangential: 0}, start: {heading: 180, speed: 0}}]\n"
 
 TEST(it_diverges_where_a_column_does) {
     const double pi = 3.14159265358979323846, stiffness = 40000 * pi * 8e-6 / 64;
@@ -170,10 +167,9 @@ TEST(a_plate_held_at_its_leading_edge_does_not_diverge) {
         struct answer found;
         answer(&found,
                arena_text(test_arena(),
-                          SCHOOL_DEFAULTS TIME
-                          "fluid: {density: 1, velocity: [0.8, 0]}\nfish: [{" PLATE
-                          ", force: reactive, nodes: %d, sheet_points: 17, motion: {prescribed: head, speed: 0},\n"
-                          "drag: {tangential: 0}, start: {heading: 180, speed: 0}}]\n",
+                          TIME "fluid: {density: 1, velocity: [0.8, 0]}\nfish: [{" PLATE
+                               ", force: reactive, nodes: %d, sheet_points: 17, motion: {prescribed: head, speed: 0},\n"
+                               "drag: {tangential: 0}, start: {heading: 180, speed: 0}}]\n",
                           i == 0 ? 17 : 33));
         school_ok(found.status);
         off[i] = found.values.stiffness - 1;
@@ -184,7 +180,7 @@ TEST(a_plate_held_at_its_leading_edge_does_not_diverge) {
 
 TEST(natural_curvature_is_the_shape_at_rest) {
     struct answer found;
-    answer(&found, SCHOOL_DEFAULTS TIME
+    answer(&found, TIME
            "fluid: {density: 0}\n"
            "fish: [{force: reactive, nodes: 9, sheet_points: 17, wave: {amplitude: 0.3, constant: 1,"
            " linear: 0, quadratic: 0, number: 0, frequency: 0, phase: 90},"
@@ -208,23 +204,20 @@ static void refused(const char *text, const char *words) {
 }
 
 TEST(what_can_have_no_equilibrium_is_refused_with_the_reason) {
-    refused(SCHOOL_DEFAULTS TIME "fish: [{" SLENDER "}]\n", "neither beats nor is held");
-    refused(SCHOOL_DEFAULTS TIME "fish: [{" SLENDER ", motion: {prescribed: head, surge: free}}]\n",
-            "motion.surge: given");
-    refused(SCHOOL_DEFAULTS TIME "fish: [{" HEAD "}, {" SLENDER
-                                 ", start: {position: [3, 0]}, motion: {prescribed: head, speed: 1}}]\n",
+    refused(TIME "fish: [{" SLENDER "}]\n", "neither beats nor is held");
+    refused(TIME "fish: [{" SLENDER ", motion: {prescribed: head, surge: free}}]\n", "motion.surge: given");
+    refused(TIME "fish: [{" HEAD "}, {" SLENDER ", start: {position: [3, 0]}, motion: {prescribed: head, speed: 1}}]\n",
             "move at different velocities");
     // along x at the same speed
-    refused(SCHOOL_DEFAULTS TIME "fish: [{" BODY
-                                 ", start: {heading: 170}, motion: {prescribed: head, speed: 1}},\n    {" BODY
-                                 ", start: {position: [3, 0], heading: 190}, motion: {prescribed: head, speed: 1}}]\n",
+    refused(TIME "fish: [{" BODY ", start: {heading: 170}, motion: {prescribed: head, speed: 1}},\n    {" BODY
+                 ", start: {position: [3, 0], heading: 190}, motion: {prescribed: head, speed: 1}}]\n",
             "move at different velocities");
-    refused(SCHOOL_DEFAULTS TIME "fluid: {gust: {amplitude: 0.1, frequency: 1}}\nfish: [{" HEAD "}]\n", "gust");
-    refused(SCHOOL_DEFAULTS TIME "fluid: {shear: 0.1}\nfish: [{" SLENDER
-                                 ", start: {heading: 90}, motion: {prescribed: head, speed: 1}}]\n",
+    refused(TIME "fluid: {gust: {amplitude: 0.1, frequency: 1}}\nfish: [{" HEAD "}]\n", "gust");
+    refused(TIME "fluid: {shear: 0.1}\nfish: [{" SLENDER
+                 ", start: {heading: 90}, motion: {prescribed: head, speed: 1}}]\n",
             "across a shear");
-    refused(SCHOOL_DEFAULTS TIME "wake: {removed_circulation: dropped}\nfish: [{" HEAD "}]\n", "retained");
-    refused(SCHOOL_DEFAULTS TIME
+    refused(TIME "wake: {removed_circulation: dropped}\nfish: [{" HEAD "}]\n", "retained");
+    refused(TIME
             "fish: [{force: reactive, nodes: 9, sheet_points: 17, wave: {amplitude: 0.1, frequency: 0, ramp: 1},"
             " motion: {prescribed: head, speed: 0}}]\n",
             "set wave.ramp to 0");
@@ -233,7 +226,7 @@ TEST(what_can_have_no_equilibrium_is_refused_with_the_reason) {
 TEST(where_there_is_none_it_says_how_far_the_stream_can_grow) {
     // the largest axial force of an edge is E A = 628 N; the load reaches 628 N at sqrt(0.628) of the stream
     struct answer found;
-    answer(&found, SCHOOL_DEFAULTS TIME
+    answer(&found, TIME
            "fluid: {density: 1, velocity: [0.01, 0]}\n"
            "fish: [{" HEAD ", load: {tip: [-1000, 0]}, start: {speed: 0, heading: 180}}]\n");
     assert_int_equal(found.status, STATUS_SOLVER);

@@ -15,7 +15,7 @@ changed() {
 
 # ---- a study from begin to end
 
-cat >small.yaml <<'end'
+cat >swimmer.yaml <<'end'
 format: 1
 time: {end: 0.2, shedding_interval: 0.02}
 fish: [{force: reactive, nodes: 9, body: {relaxation_time: 0.001}}]
@@ -23,46 +23,46 @@ sweep:
   - {key: "fish[*].wave.amplitude", values: [0.2, 0.3]}
   - {keys: [solver.method, solver.max_steps], values: [[ida, 1000], [rk4, 1000], [euler, 2]]}
 end
-run study small.yaml -j 2
+run study swimmer.yaml -j 2
 check failed_members_give_exit_code_1 test "$code" = 1
-check failures_are_counted has err '2 of 6 members in small-study are not complete'
+check failures_are_counted has err '2 of 6 members in swimmer-study are not complete'
 check the_reason_is_printed has out 'member 2 failed: limited by solver.max_steps at t = '
-check the_reason_is_kept has small-study/member-0002.failed 'limited by solver.max_steps at t = '
-check members_are_numbered_from_0 test -e small-study/member-0000.nc -a -e small-study/member-0005.nc -a \
-    ! -e small-study/member-0006.nc
+check the_reason_is_kept has swimmer-study/member-0002.failed 'limited by solver.max_steps at t = '
+check members_are_numbered_from_0 test -e swimmer-study/member-0000.nc -a -e swimmer-study/member-0005.nc -a \
+    ! -e swimmer-study/member-0006.nc
 check progress_counts_members has err '4 of 6 members done  100 %  0 s left  2 failed  0 running'
 check quantities_of_steady_states_are_not_in_the_table_of_runs eval '! grep -q growth out'
 check a_line_per_member test "$(grep -cE '^ +[0-5] +0\.[23] ' out)" = 6
-check results_are_gathered test -s small-study/study.nc
+check results_are_gathered test -s swimmer-study/study.nc
 run study "$root/cases/demo.yaml" -o one --set time.end=10 --set 'sweep=[{key: solver.rtol, values: [1e-5]}]'
 check progress_counts_the_part_of_a_running_member grep -qE '^0 of 1 members done +[1-8][0-9] %.* 1 running$' err
-run info --case small-study/member-0004.nc
+run info --case swimmer-study/member-0004.nc
 check the_last_axis_is_fastest has out 'amplitude: 0.3'
 check zipped_keys_change_together has out 'method: rk4'
 
-finished=$(changed small-study/member-0001.nc) failed=$(changed small-study/member-0002.nc)
-run study small.yaml
-check finished_members_are_passed_over test "$(changed small-study/member-0001.nc)" = "$finished"
-check failed_members_run_again test "$(changed small-study/member-0002.nc)" != "$failed"
+finished=$(changed swimmer-study/member-0001.nc) failed=$(changed swimmer-study/member-0002.nc)
+run study swimmer.yaml
+check finished_members_are_passed_over test "$(changed swimmer-study/member-0001.nc)" = "$finished"
+check failed_members_run_again test "$(changed swimmer-study/member-0002.nc)" != "$failed"
 
 # the same text of the case, but other defaults: a member of another version of the program
-sed -i 's/modulus: 1500000 /modulus: 2000000 /' small-study/member-0001.nc
-finished=$(changed small-study/member-0001.nc)
-run study small.yaml
-check a_member_of_other_defaults_runs_again test "$(changed small-study/member-0001.nc)" != "$finished"
-finished=$(changed small-study/member-0001.nc)
+sed -i 's/modulus: 1500000 /modulus: 2000000 /' swimmer-study/member-0001.nc
+finished=$(changed swimmer-study/member-0001.nc)
+run study swimmer.yaml
+check a_member_of_other_defaults_runs_again test "$(changed swimmer-study/member-0001.nc)" != "$finished"
+finished=$(changed swimmer-study/member-0001.nc)
 
 sed 1d out >table
-run info small-study/study.nc
+run info swimmer-study/study.nc
 check info_lists_the_axes has out '  axis 1      3 values of solver.method, solver.max_steps'
 check info_counts_members has out '  members     6, 4 of them complete'
 check info_prints_the_table_of_the_study cmp <(sed 1,9d out) table
-run info --case small-study/study.nc
+run info --case swimmer-study/study.nc
 check info_prints_the_case_of_the_study grep -q '^sweep: ' out
 mkdir alone
-cp small-study/member* alone
+cp swimmer-study/member* alone
 run gather alone
-check the_files_of_the_members_are_enough cmp <(sed 's/ small-study/ alone/' table) out
+check the_files_of_the_members_are_enough cmp <(sed 's/ swimmer-study/ alone/' table) out
 check gather_writes_study_nc test -s alone/study.nc
 for other in "0 3" "3 0"; do
     rm -rf mixed && cp -r alone mixed
@@ -76,7 +76,7 @@ check a_missing_member_is_reported grep -qE '^ +3 .* missing$' out
 check an_unreadable_member_is_reported has out 'member 0 failed: ./alone/member-0000.nc: cannot be read'
 
 # a study that pauses takes longer, and at its end nothing is left
-"$program" study small.yaml -o paused -j 1 >out 2>err </dev/null &
+"$program" study swimmer.yaml -o paused -j 1 >out 2>err </dev/null &
 study=$!
 wait_for test -e paused
 kill -STOP "$study"
@@ -86,30 +86,30 @@ wait "$study"
 check at_the_end_no_second_is_left has err ' 100 %  0 s left'
 
 mkdir parts
-run study small.yaml -o parts --members 0-1
+run study swimmer.yaml -o parts --members 0-1
 check a_part_ends_with_0 test "$code" = 0 -a ! -s out
 check a_part_runs_its_members_only test -e parts/member-0001.nc -a ! -e parts/member-0002.nc -a ! -e parts/study.nc
-refused a_part_counts_its_own_failures 1 '2 of 4 members failed: see parts/member-*.failed' study small.yaml -o parts --members 2-5
-refused and_its_own_members 1 '1 of 1 members failed: see parts/member-*.failed' study small.yaml -o parts --members 5-5
+refused a_part_counts_its_own_failures 1 '2 of 4 members failed: see parts/member-*.failed' study swimmer.yaml -o parts --members 2-5
+refused and_its_own_members 1 '1 of 1 members failed: see parts/member-*.failed' study swimmer.yaml -o parts --members 5-5
 
 # ---- other ways to run the members
 
 if command -v parallel >/dev/null; then
-    seq 0 5 | parallel --will-cite -j 2 "$program" study small.yaml -o many --members {} -q 2>err
+    seq 0 5 | parallel --will-cite -j 2 "$program" study swimmer.yaml -o many --members {} -q 2>err
     run gather many
     check gnu_parallel_runs_them_too cmp <(grep -o '^ *[0-5] .*-[0-9.]*e-' table) <(grep -o '^ *[0-5] .*-[0-9.]*e-' out)
 else
     skip gnu_parallel 'parallel is missing'
 fi
-run study small.yaml --slurm --bundle 4 -o cluster
-run study small.yaml --slurm --bundle 4 -o cluster --threads 2
+run study swimmer.yaml --slurm --bundle 4 -o cluster
+run study swimmer.yaml --slurm --bundle 4 -o cluster --threads 2
 check slurm_scripts_are_written_and_replaced grep -qx '6 members in 2 tasks; start them with cluster/submit.sh' out
 check a_task_has_a_bundle eval 'has cluster/array.sbatch "--array=0-1" && has cluster/array.sbatch "--cpus-per-task=2"'
 printf '#!/bin/sh\necho "$*" >>jobs; wc -l <jobs\n' >sbatch && chmod +x sbatch
 check the_results_wait_for_the_members eval 'grep -qE "members: job 1; results: job 2, .*/cluster/study.txt and study.nc" \
     <(PATH=.:$PATH sh cluster/submit.sh -p few) && grep -q "^--parsable -p few .*/array.sbatch" jobs && has jobs =afterany:1'
 mkdir others && echo mine >others/array.sbatch
-refused scripts_of_others_are_kept 4 'was not written by shoal study --slurm' study small.yaml --slurm -o others
+refused scripts_of_others_are_kept 4 'was not written by shoal study --slurm' study swimmer.yaml --slurm -o others
 # the actions of a task, without Slurm
 SLURM_ARRAY_TASK_ID=0 sh cluster/array.sbatch >/dev/null 2>&1
 check a_task_runs_the_members_of_its_bundle test -e cluster/member-0003.nc -a ! -e cluster/member-0004.nc
@@ -117,35 +117,35 @@ SLURM_ARRAY_TASK_ID=1 sh cluster/array.sbatch >/dev/null 2>&1
 check the_tasks_run_all_members test -e cluster/member-0003.nc -a -e cluster/member-0005.nc -a ! -e cluster/member-0006.nc
 sh cluster/gather.sbatch >out 2>err
 check their_results_are_those_of_the_study grep -q '2 of 6 members in .*/cluster' err
-refused no_quotes_in_scripts 2 'must not contain quotes' study small.yaml --slurm -o "it's"
-refused no_backslashes_in_scripts 2 'backslashes' study small.yaml --slurm -o 'a\b'
-run study small.yaml --slurm -o '50%a' --limit 30 --strict --force -j 2 --threads 3
+refused no_quotes_in_scripts 2 'must not contain quotes' study swimmer.yaml --slurm -o "it's"
+refused no_backslashes_in_scripts 2 'backslashes' study swimmer.yaml --slurm -o 'a\b'
+run study swimmer.yaml --slurm -o '50%a' --limit 30 --strict --force -j 2 --threads 3
 check the_tasks_take_the_options test "$(grep -c -- '--members $first-$last -j 2 --limit 30 --force &' 50%a/array.sbatch)" = 1
 check each_task_has_processors_for_its_processes has 50%a/array.sbatch '--cpus-per-task=6'
 check the_results_are_judged_strictly grep -qE "^exec .* gather '.*/50%a' --strict$" 50%a/gather.sbatch
 check a_percent_sign_is_no_pattern eval 'grep -qE "output=.*/50%%a/task-%a.log.$" 50%a/array.sbatch &&
     grep -qE "output=.*/50%%a/study.txt.$" 50%a/gather.sbatch'
 refused what_has_no_meaning_in_a_task_is_refused 2 '--max-wall 01:00:00: a task of Slurm stops a minute before its time limit' \
-    study small.yaml --slurm -o cluster --max-wall 01:00:00
+    study swimmer.yaml --slurm -o cluster --max-wall 01:00:00
 refused no_script_beside_members_of_another_study 4 'is a result of another study' \
-    study small.yaml --set fish[0].nodes=13 --slurm -o small-study
-check nor_any_script test ! -e small-study/array.sbatch
-refused bundles_of_nothing 2 '--bundle 0: expects an integer above 0' study small.yaml --slurm --bundle 0 -o cluster
-refused bundles_of_words 2 '--bundle few: expects an integer' study small.yaml --slurm --bundle few -o cluster
+    study swimmer.yaml --set fish[0].nodes=13 --slurm -o swimmer-study
+check nor_any_script test ! -e swimmer-study/array.sbatch
+refused bundles_of_nothing 2 '--bundle 0: expects an integer above 0' study swimmer.yaml --slurm --bundle 0 -o cluster
+refused bundles_of_words 2 '--bundle few: expects an integer' study swimmer.yaml --slurm --bundle few -o cluster
 
 # ---- folders with something else
 
-refused another_study_is_refused 4 'small-study/member-0000.nc is a result of another study' \
-    study small.yaml --set fish[0].nodes=13 -o small-study
-check nothing_was_changed test "$(changed small-study/member-0001.nc)" = "$finished"
-sed 's/0.2, 0.3/0.2/' small.yaml >shorter.yaml
+refused another_study_is_refused 4 'swimmer-study/member-0000.nc is a result of another study' \
+    study swimmer.yaml --set fish[0].nodes=13 -o swimmer-study
+check nothing_was_changed test "$(changed swimmer-study/member-0001.nc)" = "$finished"
+sed 's/0.2, 0.3/0.2/' swimmer.yaml >shorter.yaml
 mkdir surplus
-cp small-study/member-0003.nc surplus
+cp swimmer-study/member-0003.nc surplus
 refused a_member_of_no_study_is_refused 4 'choose another folder with -o, or remove the file with --force' \
     study shorter.yaml -q -o surplus
-run study shorter.yaml -o small-study --force
+run study shorter.yaml -o swimmer-study --force
 check force_replaces_it has out 'euler'
-check force_removes_the_rest test ! -e small-study/member-0003.nc
+check force_removes_the_rest test ! -e swimmer-study/member-0003.nc
 
 # members beyond the last, with a gap in their numbers, and what belongs to them
 mkdir gap
@@ -155,8 +155,8 @@ refused members_beyond_a_gap_are_refused 4 'gap/member-0007.nc is a result of an
 run study shorter.yaml -o gap -q --force
 check force_removes_members_beyond_a_gap test "$(cd gap && ls | sort | xargs)" = \
     'member-0000.nc member-0001.nc member-0002.failed member-0002.nc member-0009.txt study.nc'
-cp alone/member-0001.nc small-study/
-refused gather_of_two_studies 4 'is a result of another study' gather small-study
+cp alone/member-0001.nc swimmer-study/
+refused gather_of_two_studies 4 'is a result of another study' gather swimmer-study
 mkdir gathered
 cp alone/study.nc gathered
 refused the_table_of_another_study_is_refused 4 './gathered/study.nc was gathered from another study' \
@@ -166,13 +166,13 @@ check force_replaces_it_too test -e gathered/member-0000.nc
 mkdir empty
 refused gather_of_nothing 4 'empty contains no readable member of a study' gather empty
 refused gather_of_no_folder 4 'nowhere: cannot be read: No such file or directory' gather nowhere
-refused folder_is_a_file 4 'small.yaml: cannot create this folder' study small.yaml -o small.yaml
-refused folder_in_no_folder 4 'no/where: cannot create this folder' study small.yaml -o no/where
+refused folder_is_a_file 4 'swimmer.yaml: cannot create this folder' study swimmer.yaml -o swimmer.yaml
+refused folder_in_no_folder 4 'no/where: cannot create this folder' study swimmer.yaml -o no/where
 
 # ---- a long sweep
 
 seq -s, 100000 119999 >values
-{ sed '/^sweep/,$d' small.yaml; echo "sweep: [{key: \"fish[*].body.modulus\", values: [$(<values)]}]"; } >long.yaml
+{ sed '/^sweep/,$d' swimmer.yaml; echo "sweep: [{key: \"fish[*].body.modulus\", values: [$(<values)]}]"; } >long.yaml
 run check long.yaml
 check check_takes_a_sample_of_a_long_sweep grep -qE '; 20000 members, of which a sample of [0-9]{1,4} is checked$' out
 for command in study 'error --of speed --no-confirm'; do
@@ -185,38 +185,38 @@ for command in study 'error --of speed --no-confirm'; do
     check "a signal ends the checks: $command" eval 'test "$code" = 75 && grep -qE "while the members were (read|checked|planned): none of them has run" err'
     check "before anything runs: $command" test ! -e long
 done
-run study small.yaml -o heads --set time.end=0.02 \
+run study swimmer.yaml -o heads --set time.end=0.02 \
     --set 'sweep=[{key: wake.smoothing, values: [0.1, 0.05]}, {key: sheet.smoothing, values: [0.1, 0.05]}]'
 check two_keys_of_the_same_word_have_two_heads grep -qE '^member +wake.smoothing +sheet.smoothing +t ' out
 
 # ---- wrong input
 
-refused a_wrong_member_is_named 2 'member 1 (wake.lifetime=0.003):' study small.yaml -o wrong \
+refused a_wrong_member_is_named 2 'member 1 (wake.lifetime=0.003):' study swimmer.yaml -o wrong \
     --set 'sweep=[{key: wake.lifetime, values: [0.02, 0.003]}]'
 check before_anything_ran test ! -e wrong
-refused check_names_it_too 2 'member 1 (wake.lifetime=0.003):' check small.yaml \
+refused check_names_it_too 2 'member 1 (wake.lifetime=0.003):' check swimmer.yaml \
     --set 'sweep=[{key: wake.lifetime, values: [0.02, 0.003]}]'
-run check small.yaml
+run check swimmer.yaml
 check check_counts_members has out '; 6 members'
 # forty values, of which number 37 is wrong: by itself, or with the rest of the case
 forty=$(seq -s, 5 41),3,43,44
 refused a_value_out_of_range_in_member_37 2 'sweep[0].values[37] (fish.nodes): must be from 4 to 10000, got 3' \
-    study small.yaml -o wrong --set "sweep=[{key: \"fish[*].nodes\", values: [$forty]}]"
+    study swimmer.yaml -o wrong --set "sweep=[{key: \"fish[*].nodes\", values: [$forty]}]"
 forty=$(seq -f '0.%02.0f' -s, 10 46),0.003,0.48,0.49
 refused a_value_that_does_not_fit_in_member_37 2 'member 37 (wake.lifetime=0.003):' \
-    study small.yaml -o wrong --set "sweep=[{key: wake.lifetime, values: [$forty]}]"
-refused members_beyond_the_study 2 '--members 4-6: the study has members 0 to 5' study small.yaml -o parts --members 4-6
-refused members_backwards 2 '--members 3-1: expects the number of a member' study small.yaml -o parts --members 3-1
-refused members_of_words 2 '--members all: expects' study small.yaml -o parts --members all
-refused no_process 2 '-j 0: expects an integer above 0' study small.yaml -o parts -j 0
-refused processes_of_words 2 '-j two: expects an integer' study small.yaml -o parts -j two
-refused run_refuses_a_sweep 2 'use `shoal study`' run small.yaml -o never.nc
-run study small.yaml --limit 0.4 -o slow --set time.end=2000 --set 'sweep=[{key: solver.rtol, values: [1e-5]}]'
+    study swimmer.yaml -o wrong --set "sweep=[{key: wake.lifetime, values: [$forty]}]"
+refused members_beyond_the_study 2 '--members 4-6: the study has members 0 to 5' study swimmer.yaml -o parts --members 4-6
+refused members_backwards 2 '--members 3-1: expects the number of a member' study swimmer.yaml -o parts --members 3-1
+refused members_of_words 2 '--members all: expects' study swimmer.yaml -o parts --members all
+refused no_process 2 '-j 0: expects an integer above 0' study swimmer.yaml -o parts -j 0
+refused processes_of_words 2 '-j two: expects an integer' study swimmer.yaml -o parts -j two
+refused run_refuses_a_sweep 2 'use `shoal study`' run swimmer.yaml -o never.nc
+run study swimmer.yaml --limit 0.4 -o slow --set time.end=2000 --set 'sweep=[{key: solver.rtol, values: [1e-5]}]'
 check a_member_that_takes_too_long_has_failed eval 'test "$code" = 1 && has out "member 0 failed: too slow: at t = "'
 refused max_wall_stops_a_study 75 'stopped after --max-wall: 0 of 1 members are finished; repeat the command to continue' \
-    study small.yaml --max-wall 0:00:01 -o timed --set time.end=2000 --set 'sweep=[{key: solver.rtol, values: [1e-5]}]'
-refused limit_of_nothing 2 '--limit 0: expects a number above 0' study small.yaml --limit 0
-run study small.yaml --set 'sweep=[]' -o single
+    study swimmer.yaml --max-wall 0:00:01 -o timed --set time.end=2000 --set 'sweep=[{key: solver.rtol, values: [1e-5]}]'
+refused limit_of_nothing 2 '--limit 0: expects a number above 0' study swimmer.yaml --limit 0
+run study swimmer.yaml --set 'sweep=[]' -o single
 check without_a_sweep_there_is_one_member test "$code" = 0 -a -e single/member-0000.nc -a ! -e single/member-0001.nc
 
 # ---- convergence
@@ -307,18 +307,18 @@ check that_it_is_missing_is_printed has err '  MISSED   member 3 has no such val
 run info unstated/study.nc
 check info_reports_it_too eval 'test "$code" = 0 && has out "missed: expect[0]"'
 refused a_member_that_is_not_complete_misses 3 'expect[0]: speed: expectation not met: see the output' \
-    study small.yaml -q -o failing --set 'sweep=[{key: solver.max_steps, values: [1000, 2]}]' \
+    study swimmer.yaml -q -o failing --set 'sweep=[{key: solver.max_steps, values: [1000, 2]}]' \
     --set solver.method=euler --set 'expect=[{of: speed, least: 0}]'
 check which_member_it_is_is_printed has err '  MISSED   member 1 is not complete'
-run study small.yaml -o doomed --set 'expect=[{fails: limited by, where: [solver.method=euler]},
+run study swimmer.yaml -o doomed --set 'expect=[{fails: limited by, where: [solver.method=euler]},
     {of: speed, least: 0, where: [solver.method=ida, solver.method=rk4]}]'
 check failures_that_are_expected_give_exit_code_0 eval 'test "$code" = 0 && grep -q "^member 2 failed" out'
 check they_are_counted grep -qx 'failures, 2 members' out
 check several_values_of_a_key_are_alternatives grep -qx 'speed, 4 values' out
-refused a_failure_that_does_not_come_misses 3 'expect[0]: failures: expectation not met' study small.yaml -o doomed --force \
+refused a_failure_that_does_not_come_misses 3 'expect[0]: failures: expectation not met' study swimmer.yaml -o doomed --force \
     --set 'expect=[{fails: limited by, where: [solver.method=euler, solver.method=rk4]}]'
 check which_member_does_not_fail_is_printed has out "  MISSED   member 4 has not failed with 'limited by'"
-refused other_words_of_the_reason_miss_too 3 'expect[0]: failures: expectation not met' study small.yaml -o doomed --force \
+refused other_words_of_the_reason_miss_too 3 'expect[0]: failures: expectation not met' study swimmer.yaml -o doomed --force \
     --set 'expect=[{fails: out of memory, where: [solver.method=euler]}]'
 run study stated.yaml -o plain --set 'sweep=[]'
 check without_a_sweep_nothing_is_expected eval 'test "$code" = 0 && ! grep -q Expected out'
@@ -332,8 +332,8 @@ draws() {  # file
 if /usr/bin/python3 -c 'import netCDF4, matplotlib' 2>err; then
     check a_picture_of_orders draws refined-study/study.nc
     check a_picture_of_groups draws groups/study.nc
-    check a_picture_of_methods draws small-study/study.nc
-    run study small.yaml -o map --set time.end=0.04 --set \
+    check a_picture_of_methods draws swimmer-study/study.nc
+    run study swimmer.yaml -o map --set time.end=0.04 --set \
         'sweep=[{key: "fish[*].body.modulus", values: [1e4, 1e6]}, {key: "fish[*].wave.frequency", values: [1, 2]}]'
     check a_map_over_two_axes draws map/study.nc
     run study stated.yaml -o places --set time.end=0.04 --set expect=[] --set \
@@ -439,7 +439,7 @@ check no_member_has_failed_by_it test ! -e grouped/member-0000.failed -a ! -e gr
 
 # the parent of the program may ignore SIGCHLD
 code=0
-timeout "$time_limit" env --ignore-signal=CHLD "$program" study small.yaml -o ignored -q >out 2>err </dev/null || code=$?
+timeout "$time_limit" env --ignore-signal=CHLD "$program" study swimmer.yaml -o ignored -q >out 2>err </dev/null || code=$?
 check a_study_sees_its_members_end_all_the_same eval 'test "$code" = 1 && has err "2 of 6 members in ignored"'
 
 # a processor for each thread of each member, of the processors that the program may use

@@ -25,7 +25,7 @@ static int set_up(void **state) {
     strcpy(f->folder, "/tmp/shoal-plan-XXXXXX");
     assert_non_null(mkdtemp(f->folder));
     for (int m = 0; m < 3; m++) snprintf(f->member[m], sizeof f->member[m], "%s/member-%04d.nc", f->folder, m);
-    assert_int_equal(case_parse(&f->study, case_text, strlen(case_text), "small.yaml", NULL, 0, NULL), STATUS_OK);
+    assert_int_equal(case_parse(&f->study, case_text, strlen(case_text), "swimmer.yaml", NULL, 0, NULL), STATUS_OK);
     const struct study_options options = {.folder = f->folder, .command = "test", .last = -1, .n_processes = 2};
     int n_failed;
     assert_int_equal(study_run(&f->study, &options, &n_failed), STATUS_OK);

@@ -5,9 +5,7 @@
 #include "school.h"
 #include "wake/wake.h"
 
-const bool school_small = true;
-
-#define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+#define SMALL "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\ndefaults: {fish: {nodes: 7}}\n"
 
 static void at_time(const struct wake *wake, const struct school *school, double t, double tau, double *x, double *y,
                     double *strength) {
@@ -29,7 +27,7 @@ TEST(release_keeps_what_is_there_while_it_grows) {
 }
 
 TEST(path_follows_a_velocity_that_is_linear_in_time) {
-    struct setup setup = setup_of(TIME "fish: [{}]\n");
+    struct setup setup = setup_of(SMALL "fish: [{}]\n");
     const double interval = setup.school->interval;
     struct wake *wake = &setup.state->wake[0];
     wake_release(wake, 1, 2, 0.5, 0);
@@ -93,7 +91,7 @@ TEST(new_velocities_push_the_old_ones_back) {
 }
 
 TEST(strength_fades_as_the_ramp_over_the_last_part_of_life) {
-    struct setup setup = setup_of(TIME "wake: {lifetime: 1, decay: 0.4}\nfish: [{}]\n");
+    struct setup setup = setup_of(SMALL "wake: {lifetime: 1, decay: 0.4}\nfish: [{}]\n");
     for (int i = 0; i <= 4; i++) NEAR(wake_strength(setup.school, 0.59 + 0.1 * i), 1 - ramp_step(0.25 * i), 1e-14, 0);
     NEAR(wake_strength(setup.school, 0.5), 1, 0, 0);
 
@@ -109,14 +107,15 @@ TEST(strength_fades_as_the_ramp_over_the_last_part_of_life) {
 
 // between two events the strength is linear, also in the interval in which the decay begins
 TEST(strength_within_an_interval_joins_the_strengths_at_its_ends) {
-    static const char *const lives[] = {"lifetime: 1, decay: 0.4",   "lifetime: 1, decay: 0.1",
-                                        "lifetime: 1, decay: 0.03",  "lifetime: 1, decay: 0.001",
-                                        "lifetime: 1, decay: 0",     "lifetime: 1.013, decay: 0.405",
-                                        "lifetime: 1.013, decay: 0", "shedding: impulsive, lifetime: 1, decay: 0"};
+    static const char *const lives[] = {
+        "shedding: continuous, lifetime: 1, decay: 0.4",   "shedding: continuous, lifetime: 1, decay: 0.1",
+        "shedding: continuous, lifetime: 1, decay: 0.03",  "shedding: continuous, lifetime: 1, decay: 0.001",
+        "shedding: continuous, lifetime: 1, decay: 0",     "shedding: continuous, lifetime: 1.013, decay: 0.405",
+        "shedding: continuous, lifetime: 1.013, decay: 0", "shedding: impulsive, lifetime: 1, decay: 0"};
     for (size_t i = 0; i < sizeof lives / sizeof *lives; i++) {
         struct setup setup;
         char text[256];
-        snprintf(text, sizeof text, TIME "wake: {%s}\nfish: [{}]\n", lives[i]);
+        snprintf(text, sizeof text, SMALL "wake: {%s}\nfish: [{}]\n", lives[i]);
         school_build(&setup, text);
         struct wake *const wake = &setup.state->wake[0];
         wake_release(wake, 0, 0, 2, 0);
@@ -135,7 +134,7 @@ TEST(strength_within_an_interval_joins_the_strengths_at_its_ends) {
 }
 
 TEST(old_vortices_go_and_leave_their_circulation) {
-    struct setup setup = setup_of(TIME "wake: {lifetime: 0.1}\nfish: [{}]\n");
+    struct setup setup = setup_of(SMALL "wake: {shedding: continuous, lifetime: 0.1}\nfish: [{}]\n");
     struct wake *wake = &setup.state->wake[0];
     for (int i = 1; i <= 9; i++) wake_release(wake, i, -i, 0.1 * i, 0.02 * i);
 
@@ -152,7 +151,7 @@ TEST(old_vortices_go_and_leave_their_circulation) {
 }
 
 TEST(without_fade_a_vortex_vanishes_within_one_interval) {
-    struct setup setup = setup_of(TIME "wake: {lifetime: 0.105, decay: 0}\nfish: [{}]\n");
+    struct setup setup = setup_of(SMALL "wake: {shedding: continuous, lifetime: 0.105, decay: 0}\nfish: [{}]\n");
     struct wake *wake = &setup.state->wake[0];
     wake_release(wake, 0, 0, 2, 0);
     NEAR(wake_strength(setup.school, 0.08), 1, 0, 0);
@@ -170,7 +169,7 @@ TEST(without_fade_a_vortex_vanishes_within_one_interval) {
 }
 
 TEST(a_stretch_is_as_old_as_its_newer_marker) {
-    struct setup setup = setup_of(TIME "wake: {lifetime: 0.1, decay: 0.06}\nfish: [{}]\n");
+    struct setup setup = setup_of(SMALL "wake: {lifetime: 0.1, decay: 0.06}\nfish: [{}]\n");
     struct wake *wake = &setup.state->wake[0];
     wake->has_markers = 1;
     for (int i = 0; i < 5; i++) wake_release(wake, i, 0, i * i, 0.02 * i);
@@ -216,7 +215,7 @@ static struct wake *queue(const struct setup *setup, int n) {
 }
 
 TEST(a_vortex_from_outside_is_a_stretch_between_two_without_circulation) {
-    struct setup setup = setup_of(TIME "wake: {shedding: sheet, taper: 0.1, spare_vortices: 3}\nfish: [{}]\n");
+    struct setup setup = setup_of(SMALL "wake: {spare_vortices: 3}\nfish: [{pressure: {span: infinite}}]\n");
     struct wake *const wake = queue(&setup, 10);
     wake->removed = 0.5;
     const unsigned long version = wake->version;
@@ -244,7 +243,7 @@ TEST(a_vortex_from_outside_is_a_stretch_between_two_without_circulation) {
 }
 
 TEST(a_vortex_from_outside_among_vortices_is_the_newest) {
-    struct setup setup = setup_of(TIME "wake: {spare_vortices: 1}\nfish: [{}]\n");
+    struct setup setup = setup_of(SMALL "wake: {shedding: continuous, spare_vortices: 1}\nfish: [{}]\n");
     struct wake *const wake = &setup.state->wake[0];
     for (int i = 0; i < 3; i++) wake_release(wake, i, -i, 1, 0.02 * i);
     school_ok(wake_add_vortex(wake, setup.school, 0.2, 7, 8, 100));
@@ -255,7 +254,7 @@ TEST(a_vortex_from_outside_among_vortices_is_the_newest) {
 }
 
 TEST(a_queue_goes_on_at_a_tail_that_was_moved) {
-    struct setup setup = setup_of(TIME "wake: {shedding: sheet, taper: 0.1, spare_vortices: 1}\nfish: [{}]\n");
+    struct setup setup = setup_of(SMALL "wake: {spare_vortices: 1}\nfish: [{}]\n");
     struct wake *const wake = queue(&setup, 4);
     // the tail is at the newest marker: no break
     school_ok(wake_break(wake, setup.school, 0.1, (const double[]){3, -3}));
@@ -294,7 +293,7 @@ TEST(the_oldest_label_is_what_was_removed) {
 }
 
 TEST(most_is_enough_and_not_too_much) {
-    struct setup setup = setup_of(TIME "wake: {lifetime: 0.1}\nfish: [{}]\n");
+    struct setup setup = setup_of(SMALL "wake: {lifetime: 0.1}\nfish: [{}]\n");
     // markers at both ends of five stretches; a release at every event, and for impulses one at the start
     assert_int_equal(wake_most(setup.school, 1000), 6);
     assert_int_equal(wake_most(setup.school, 3), 4);
