@@ -12,6 +12,7 @@
 
 // five beats per second: a period is over, and a course made, well before the end
 #define STEERED                                                                                           \
+    VERIFY_ARTICLE                                                                                        \
     "format: 1\ntime: {end: 1, shedding_interval: %g}\nsolver: {rtol: 1.0e-5, max_steps: 10000000, %s}\n" \
     "fluid: {velocity: [0.3, 0.2], shear: 2}\n"                                                           \
     "fish: [{sheet_points: 13, body: {modulus: %g}, wave: {frequency: 5, amplitude: 0.2},\n"              \
@@ -70,10 +71,9 @@ static void stiff_bodies(void) {
 
 static void waypoints(void) {
     if (verify_is_fast()) return;
-    struct simulation *const simulation =
-        verify_open(VERIFY_DEFAULTS
-                    "format: 1\ntime: {end: 40, shedding_interval: 0.02}\n"
-                    "fish: [{control: {waypoints: [[-4, 1], [-8, -1], [-12, 0]]}}]\n");
+    struct simulation *const simulation = verify_open(
+        "format: 1\ntime: {end: 40, shedding_interval: 0.02}\n"
+        "fish: [{control: {waypoints: [[-4, 1], [-8, -1], [-12, 0]]}}]\n");
     const struct state *const state = simulation->state;
     double t = 0;
     while (state->control[0].waypoint < 3 && t < 30) verify_run(simulation, t += 0.02);
@@ -85,7 +85,6 @@ static void waypoints(void) {
 static void course_in_a_wake(void) {
     if (verify_is_fast()) return;
     struct simulation *const simulation = verify_open(
-        VERIFY_DEFAULTS
         "format: 1\ntime: {end: 20, shedding_interval: 0.02}\n"
         "fish: [{control: {law: course, gain: 2}}, {start: {position: [2, 0.3]}, control: {law: course, gain: 2}}]\n");
     double most = 0;

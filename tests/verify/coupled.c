@@ -24,15 +24,15 @@ struct plate {
 
 static struct simulation *open_plate(const struct plate *plate) {
     const double thickness = 0.1;
-    return verify_open(VERIFY_DEFAULTS
-                       "format: 1\ntime: {end: 1, shedding_interval: 0.002}\n"
-                       "fluid: {density: 1, viscosity: 0, velocity: [0, %.17g]}\nfish:\n"
-                       "  - {nodes: %d, sheet_points: %d, force: pressure, pressure: {span: infinite}, wave: "
-                       "{amplitude: 0, frequency: 0},\n"
-                       "     body: {profile: uniform, thickness: %g, depth: 1, density: %.17g, modulus: %.17g,\n"
-                       "            relaxation_time: %g}}\n",
-                       plate->stream, plate->nodes, plate->n_sheet, thickness, plate->mass / (pi / 4 * thickness),
-                       plate->stiffness / (pi / 64 * pow(thickness, 3)), plate->relaxation_time);
+    return verify_open(
+        "format: 1\ntime: {end: 1, shedding_interval: 0.002}\n"
+        "fluid: {density: 1, viscosity: 0, velocity: [0, %.17g]}\nfish:\n"
+        "  - {nodes: %d, sheet_points: %d, force: pressure, pressure: {span: infinite}, wave: "
+        "{amplitude: 0, frequency: 0},\n"
+        "     body: {profile: uniform, thickness: %g, depth: 1, density: %.17g, modulus: %.17g,\n"
+        "            relaxation_time: %g}}\n",
+        plate->stream, plate->nodes, plate->n_sheet, thickness, plate->mass / (pi / 4 * thickness),
+        plate->stiffness / (pi / 64 * pow(thickness, 3)), plate->relaxation_time);
 }
 
 // the added momentum of the nodes of a plate in still fluid for given velocities across the plate, without shedding
@@ -155,17 +155,17 @@ static struct simulation *open_fish(int nodes, double interval, double rtol, dou
         snprintf(follower, sizeof follower, ", {name: follower, start: {position: [%.17g, 0], speed: %.17g}}", 1 + gap,
                  start);
     }
-    return verify_open(VERIFY_DEFAULTS
-                       "format: 1\ntime: {end: %g, shedding_interval: %.17g}\n"
-                       "fluid: {density: 1, viscosity: 1.003e-4}\nwake: {lifetime: 8, smoothing: %g}\n"
-                       "solver: {rtol: %g}\ndefaults: {fish: {nodes: %d, sheet_points: %d, " VERIFY_ATTACHED
-                       ", start: {speed: %.17g},\n"
-                       "  wave: {amplitude: 0.83333333333333337, constant: 0.2, linear: 0.8, quadratic: 0,\n"
-                       "         number: -6.2831853071795862, ramp: 2},\n"
-                       "  body: {profile: uniform, thickness: %.17g, depth: 1, density: %.17g, modulus: %.17g,\n"
-                       "         relaxation_time: 0.002}}}\nfish: [{name: leader}%s]\n",
-                       end, interval, smoothing, rtol, nodes, 2 * nodes - 1, start, thickness,
-                       0.1 / (pi / 4 * thickness), 64 / (pi * pow(thickness, 3)), follower);
+    return verify_open(
+        "format: 1\ntime: {end: %g, shedding_interval: %.17g}\n"
+        "fluid: {density: 1, viscosity: 1.003e-4}\nwake: {lifetime: 8, smoothing: %g}\n"
+        "solver: {rtol: %g}\ndefaults: {fish: {nodes: %d, sheet_points: %d, " VERIFY_ATTACHED
+        ", start: {speed: %.17g},\n"
+        "  wave: {amplitude: 0.83333333333333337, constant: 0.2, linear: 0.8, quadratic: 0,\n"
+        "         number: -6.2831853071795862, ramp: 2},\n"
+        "  body: {profile: uniform, thickness: %.17g, depth: 1, density: %.17g, modulus: %.17g,\n"
+        "         relaxation_time: 0.002}}}\nfish: [{name: leader}%s]\n",
+        end, interval, smoothing, rtol, nodes, 2 * nodes - 1, start, thickness, 0.1 / (pi / 4 * thickness),
+        64 / (pi * pow(thickness, 3)), follower);
 }
 
 // the speed in the sixth beat, and the checks that every such run passes

@@ -13,14 +13,14 @@ static const double pi = 3.14159265358979323846;
 // a plate that heaves in a stream of 1 m/s
 static struct simulation *heave_at(double frequency, const char *span, double depth, double amplitude, const char *wake,
                                    const char *walls) {
-    return verify_open(VERIFY_DEFAULTS
-                       "format: 1\ntime: {end: 20}\nfluid: {density: 1, viscosity: 0, velocity: [1, 0], walls: [%s]}\n"
-                       "wake: {%s}\n"
-                       "fish: [{nodes: 9, sheet_points: %d, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
-                       "        pressure: {span: %s, suction_limit: 0},\n"
-                       "        body: {profile: uniform, thickness: 0.02, depth: %.17g},\n"
-                       "        motion: {prescribed: all, heave: %.17g, frequency: %.17g}}]\n",
-                       walls, wake, depth < 0.2 ? 65 : 33, span, depth, amplitude, frequency);
+    return verify_open(
+        "format: 1\ntime: {end: 20}\nfluid: {density: 1, viscosity: 0, velocity: [1, 0], walls: [%s]}\n"
+        "wake: {%s}\n"
+        "fish: [{nodes: 9, sheet_points: %d, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
+        "        pressure: {span: %s, suction_limit: 0},\n"
+        "        body: {profile: uniform, thickness: 0.02, depth: %.17g},\n"
+        "        motion: {prescribed: all, heave: %.17g, frequency: %.17g}}]\n",
+        walls, wake, depth < 0.2 ? 65 : 33, span, depth, amplitude, frequency);
 }
 
 static struct simulation *heave(const char *span, double depth, double amplitude, const char *wake, const char *walls) {
@@ -42,14 +42,13 @@ static void check_slender(void) {
 /* Steady lift over that of two dimensions, pi rho U^2 w L alpha, at a small incidence, D lengths after the start. */
 static double lift_part(double depth, int n_sheet, double interval, double end) {
     const double angle = 0.01;
-    struct simulation *const simulation =
-        verify_open(VERIFY_DEFAULTS
-                    "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
-                    "fluid: {density: 1, viscosity: 0, velocity: [1, %.17g]}\nwake: {lifetime: 1000, decay: 0}\n"
-                    "fish: [{nodes: 9, sheet_points: %d, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
-                    "        pressure: {span: finite, suction_limit: 0}, motion: {prescribed: all},\n"
-                    "        body: {profile: uniform, thickness: 0.02, depth: %.17g}}]\n",
-                    end, interval, interval, tan(angle), n_sheet, depth);
+    struct simulation *const simulation = verify_open(
+        "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
+        "fluid: {density: 1, viscosity: 0, velocity: [1, %.17g]}\nwake: {lifetime: 1000, decay: 0}\n"
+        "fish: [{nodes: 9, sheet_points: %d, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
+        "        pressure: {span: finite, suction_limit: 0}, motion: {prescribed: all},\n"
+        "        body: {profile: uniform, thickness: 0.02, depth: %.17g}}]\n",
+        end, interval, interval, tan(angle), n_sheet, depth);
     verify_run(simulation, end);
     simulate_measure(simulation);
     const struct pressure_forces *const of = &simulation->diagnostics->fish[0].pressure;
@@ -60,13 +59,12 @@ static double lift_part(double depth, int n_sheet, double interval, double end) 
 
 /* Added mass of a plate that heaves, over pi rho L^2 w/4 of two dimensions, without shed circulation. */
 static double added_mass_part(double depth, int n_sheet) {
-    struct simulation *const simulation =
-        verify_open(VERIFY_DEFAULTS
-                    "format: 1\ntime: {end: 1}\nfluid: {density: 1, viscosity: 0}\n"
-                    "fish: [{nodes: 17, sheet_points: %d, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
-                    "        pressure: {span: finite}, start: {speed: 0},\n"
-                    "        body: {profile: uniform, thickness: 0.1, depth: %.17g}}]\n",
-                    n_sheet, depth);
+    struct simulation *const simulation = verify_open(
+        "format: 1\ntime: {end: 1}\nfluid: {density: 1, viscosity: 0}\n"
+        "fish: [{nodes: 17, sheet_points: %d, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
+        "        pressure: {span: finite}, start: {speed: 0},\n"
+        "        body: {profile: uniform, thickness: 0.1, depth: %.17g}}]\n",
+        n_sheet, depth);
     struct residual *const residual = simulation->residual;
     const struct fish *const fish = &simulation->school->fish[0];
     double *const y = simulation->state->y, mass = 0;
@@ -135,12 +133,12 @@ static void check_added_mass(void) {
 
 // the energy balance of a free fish at the end over the work of its muscle
 static void check_energy(const char *name, const char *walls, double end) {
-    struct simulation *const simulation = verify_open(VERIFY_DEFAULTS
-                                                      "format: 1\ntime: {end: %.17g}\nsolver: {rtol: 1e-7}\n"
-                                                      "fluid: {walls: [%s]}\n"
-                                                      "fish: [{force: pressure, start: {speed: 0.5},\n"
-                                                      "        pressure: {span: finite}}]\n",
-                                                      end, walls);
+    struct simulation *const simulation = verify_open(
+        "format: 1\ntime: {end: %.17g}\nsolver: {rtol: 1e-7}\n"
+        "fluid: {walls: [%s]}\n"
+        "fish: [{force: pressure, start: {speed: 0.5},\n"
+        "        pressure: {span: finite}}]\n",
+        end, walls);
     verify_run(simulation, end);
     simulate_measure(simulation);
     const struct diagnostics_fish *const of = simulation->diagnostics->fish;
@@ -196,11 +194,11 @@ static void check_channel_limits(void) {
 }
 
 static struct simulation *in_channel(double y, double phase) {
-    return verify_open(VERIFY_DEFAULTS
-                       "format: 1\ntime: {end: 1}\nsolver: {rtol: 1e-8}\nfluid: {viscosity: 0, walls: [-0.5, 0.5]}\n"
-                       "fish: [{force: pressure, start: {speed: 0.5, position: [0, %.17g]},\n"
-                       "        wave: {phase: %.17g}, pressure: {span: finite, suction_limit: 0}}]\n",
-                       y, phase);
+    return verify_open(
+        "format: 1\ntime: {end: 1}\nsolver: {rtol: 1e-8}\nfluid: {viscosity: 0, walls: [-0.5, 0.5]}\n"
+        "fish: [{force: pressure, start: {speed: 0.5, position: [0, %.17g]},\n"
+        "        wave: {phase: %.17g}, pressure: {span: finite, suction_limit: 0}}]\n",
+        y, phase);
 }
 
 // flow through the walls, mirror symmetry, momentum of a fish that swims between walls
@@ -247,11 +245,11 @@ static void check_channel_fish(void) {
 
 // the momentum of a fish, and of two of different depth, is found in the fluid
 static void check_momentum(const char *name, const char *fish, double bound) {
-    struct simulation *const simulation = verify_open(VERIFY_DEFAULTS
-                                                      "format: 1\ntime: {end: 2}\nfluid: {viscosity: 0}\n"
-                                                      "defaults: {fish: {force: pressure, start: {speed: 0.5},\n"
-                                                      "  pressure: {span: finite, suction_limit: 0}}}\nfish: [%s]\n",
-                                                      fish);
+    struct simulation *const simulation = verify_open(
+        "format: 1\ntime: {end: 2}\nfluid: {viscosity: 0}\n"
+        "defaults: {fish: {force: pressure, start: {speed: 0.5},\n"
+        "  pressure: {span: finite, suction_limit: 0}}}\nfish: [%s]\n",
+        fish);
     double most = 0, momentum = 0;
     for (int i = 1; i <= 20; i++) {
         verify_run(simulation, 0.1 * i);
@@ -271,10 +269,10 @@ static void check_momentum(const char *name, const char *fish, double bound) {
 // The wake of a slow slender fish stays at the tail. A strip that is not rolled up there breaks up: labels grow to 6
 // times the circulation shed, and the fish diverges.
 static void check_slow_start(void) {
-    struct simulation *const simulation = verify_open(VERIFY_DEFAULTS
-                                                      "format: 1\ntime: {end: 5}\n"
-                                                      "fish: [{force: pressure, body: {depth: 0.05},\n"
-                                                      "        start: {speed: 0}, pressure: {span: finite}}]\n");
+    struct simulation *const simulation = verify_open(
+        "format: 1\ntime: {end: 5}\n"
+        "fish: [{force: pressure, body: {depth: 0.05},\n"
+        "        start: {speed: 0}, pressure: {span: finite}}]\n");
     double label = 0, shed = 0;
     for (int i = 1; i <= 100; i++) {
         verify_run(simulation, 0.05 * i);

@@ -31,17 +31,16 @@ static struct setting usual(int n_nodes) {
 static struct simulation *open_plate(const struct setting *setting, double end, const struct linear_theory_body *body,
                                      double heading, const char *motion) {
     const double thickness = 0.1;
-    return verify_open(VERIFY_DEFAULTS
-                       "format: 1\ntime: {end: %.17g, shedding_interval: %.17g}\n"
-                       "fluid: {density: 1, viscosity: 0, velocity: [1, 0]}\nwake: {lifetime: 1000, taper: %g}\n"
-                       "solver: {rtol: %g}\nfish:\n  - {nodes: %d, sheet_points: %d, " VERIFY_ATTACHED
-                       ", wave: {amplitude: 0},\n"
-                       "     body: {profile: uniform, thickness: %g, depth: 1, density: %.17g, modulus: %.17g,\n"
-                       "            relaxation_time: 0},\n"
-                       "     start: {heading: %.17g, speed: 0}, motion: {prescribed: head, speed: 0%s}}\n",
-                       end, 1.0 / N_FRACTION, setting->taper, setting->rtol, setting->n_nodes, setting->n_sheet,
-                       thickness, body->mass / (pi / 4 * thickness), body->stiffness / (pi / 64 * pow(thickness, 3)),
-                       heading, motion);
+    return verify_open(
+        "format: 1\ntime: {end: %.17g, shedding_interval: %.17g}\n"
+        "fluid: {density: 1, viscosity: 0, velocity: [1, 0]}\nwake: {lifetime: 1000, taper: %g}\n"
+        "solver: {rtol: %g}\nfish:\n  - {nodes: %d, sheet_points: %d, " VERIFY_ATTACHED
+        ", wave: {amplitude: 0},\n"
+        "     body: {profile: uniform, thickness: %g, depth: 1, density: %.17g, modulus: %.17g,\n"
+        "            relaxation_time: 0},\n"
+        "     start: {heading: %.17g, speed: 0}, motion: {prescribed: head, speed: 0%s}}\n",
+        end, 1.0 / N_FRACTION, setting->taper, setting->rtol, setting->n_nodes, setting->n_sheet, thickness,
+        body->mass / (pi / 4 * thickness), body->stiffness / (pi / 64 * pow(thickness, 3)), heading, motion);
 }
 
 static double height(const struct simulation *simulation, int node) {

@@ -15,13 +15,13 @@ static const double amplitude = 0.005; /* of gusts, m s-1 */
 
 /* A plate from x = 0 to 1 in the stream 1 along x; gust: keys of the gust. */
 static struct simulation *open_plate(int n_sheet, double interval, double end, const char *gust) {
-    return verify_open(VERIFY_DEFAULTS
-                       "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
-                       "fluid: {density: 1, viscosity: 0, velocity: [1, 0], gust: {amplitude: %.17g, %s}}\n"
-                       "wake: {lifetime: 1000}\nfish:\n  - {nodes: 17, sheet_points: %d, " VERIFY_ATTACHED
-                       ", wave: {amplitude: 0, frequency: 0},\n     start: {speed: 0}, motion: {prescribed: all},\n"
-                       "     body: {profile: uniform, thickness: 0.02, depth: 1, density: 1}}\n",
-                       end, interval, interval, amplitude, gust, n_sheet);
+    return verify_open(
+        "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
+        "fluid: {density: 1, viscosity: 0, velocity: [1, 0], gust: {amplitude: %.17g, %s}}\n"
+        "wake: {lifetime: 1000}\nfish:\n  - {nodes: 17, sheet_points: %d, " VERIFY_ATTACHED
+        ", wave: {amplitude: 0, frequency: 0},\n     start: {speed: 0}, motion: {prescribed: all},\n"
+        "     body: {profile: uniform, thickness: 0.02, depth: 1, density: 1}}\n",
+        end, interval, interval, amplitude, gust, n_sheet);
 }
 
 /* The force of the fluid at an event, N: pressure across the stream, suction along the stream. */
@@ -98,13 +98,12 @@ static void kuessner(void) {
  * a small body. */
 static double street_speed(int n, double interval) {
     const double end = 1;
-    struct simulation *const simulation =
-        verify_open(VERIFY_DEFAULTS
-                    "format: 1\ntime: {end: %g, shedding_interval: %.17g, output_interval: %.17g}\n"
-                    "wake: {lifetime: 1000, street: {vortices: %d, spacing: 1, circulation: 1}}\nsolver: {rtol: 1e-4}\n"
-                    "fish: [{length: 1e-3, force: published, sheet_points: 9, wave: {amplitude: 0, frequency: 0},\n"
-                    "        start: {position: [0, 1000], speed: 0}, motion: {prescribed: all}}]\n",
-                    end, interval, interval, n);
+    struct simulation *const simulation = verify_open(
+        "format: 1\ntime: {end: %g, shedding_interval: %.17g, output_interval: %.17g}\n"
+        "wake: {lifetime: 1000, street: {vortices: %d, spacing: 1, circulation: 1}}\nsolver: {rtol: 1e-4}\n"
+        "fish: [{length: 1e-3, force: published, sheet_points: 9, wave: {amplitude: 0, frequency: 0},\n"
+        "        start: {position: [0, 1000], speed: 0}, motion: {prescribed: all}}]\n",
+        end, interval, interval, n);
     const struct wake *const wake = &simulation->state->wake[0];
     double sum = 0;
     for (int way = 0; way < 2; way++) {
@@ -137,17 +136,16 @@ static void street(void) {
 static void drift(void) {
     const double a = 2, h = acosh(sqrt(2)) / pi * a, circulation = 0.01, interval = verify_is_fast() ? 0.02 : 0.01;
     const double mass = pi / 4 * 0.02, from = 10, to = from + 3 * a;
-    struct simulation *const simulation =
-        verify_open(VERIFY_DEFAULTS
-                    "format: 1\ntime: {end: %g, shedding_interval: %.17g, output_interval: %.17g}\n"
-                    "fluid: {density: 1, viscosity: 0, velocity: [%.17g, 0]}\n"
-                    "wake: {lifetime: 1000, smoothing: 0.005,\n"
-                    "       street: {vortices: 48, spacing: %g, circulation: %g, position: [-7, 0]}}\nfish:\n"
-                    "  - {nodes: 17, sheet_points: %d, " VERIFY_ATTACHED
-                    ", wave: {amplitude: 0, frequency: 0},\n"
-                    "     start: {speed: 0}, motion: {prescribed: all, surge: free},\n"
-                    "     body: {profile: uniform, thickness: 0.02, depth: 1, density: 1}}\n",
-                    to, interval, interval, 1 + circulation / a, a, circulation, verify_is_fast() ? 33 : 65);
+    struct simulation *const simulation = verify_open(
+        "format: 1\ntime: {end: %g, shedding_interval: %.17g, output_interval: %.17g}\n"
+        "fluid: {density: 1, viscosity: 0, velocity: [%.17g, 0]}\n"
+        "wake: {lifetime: 1000, smoothing: 0.005,\n"
+        "       street: {vortices: 48, spacing: %g, circulation: %g, position: [-7, 0]}}\nfish:\n"
+        "  - {nodes: 17, sheet_points: %d, " VERIFY_ATTACHED
+        ", wave: {amplitude: 0, frequency: 0},\n"
+        "     start: {speed: 0}, motion: {prescribed: all, surge: free},\n"
+        "     body: {profile: uniform, thickness: 0.02, depth: 1, density: 1}}\n",
+        to, interval, interval, 1 + circulation / a, a, circulation, verify_is_fast() ? 33 : 65);
     double thrust = 0, speed[2];
     for (int m = 1; m < 8; m += 2) {
         const double across = 2 * circulation / a * exp(-pi * m * h / a), lift = cabs(linear_theory_sears(pi * m / a));
@@ -234,15 +232,14 @@ static void advance(struct free_plate *plate, int n) {
 static void free_plate(void) {
     const double density = 500, mass = pi / 4 * 0.02 * density;
     struct free_plate plate = {.mass = mass, .inertia = mass / 12};
-    struct simulation *const simulation =
-        verify_open(VERIFY_DEFAULTS
-                    "format: 1\ntime: {end: 5, shedding_interval: %.17g, output_interval: %.17g}\n"
-                    "fluid: {density: 1, viscosity: 0, velocity: [1, 0]}\nwake: {lifetime: 1000, smoothing: 0.005,\n"
-                    "       street: {vortices: %d, spacing: %g, circulation: %g, position: [%.17g, 0]}}\nfish:\n"
-                    "  - {nodes: 33, sheet_points: 65, " VERIFY_ATTACHED
-                    ", wave: {amplitude: 0, frequency: 0}, start: {speed: 0},\n"
-                    "     body: {profile: uniform, thickness: 0.02, depth: 1, density: %g, modulus: 1.0e+9}}\n",
-                    step, step, N_STREET, street_spacing, street_circulation, street_middle(), density);
+    struct simulation *const simulation = verify_open(
+        "format: 1\ntime: {end: 5, shedding_interval: %.17g, output_interval: %.17g}\n"
+        "fluid: {density: 1, viscosity: 0, velocity: [1, 0]}\nwake: {lifetime: 1000, smoothing: 0.005,\n"
+        "       street: {vortices: %d, spacing: %g, circulation: %g, position: [%.17g, 0]}}\nfish:\n"
+        "  - {nodes: 33, sheet_points: 65, " VERIFY_ATTACHED
+        ", wave: {amplitude: 0, frequency: 0}, start: {speed: 0},\n"
+        "     body: {profile: uniform, thickness: 0.02, depth: 1, density: %g, modulus: 1.0e+9}}\n",
+        step, step, N_STREET, street_spacing, street_circulation, street_middle(), density);
     const struct fish *const fish = &simulation->school->fish[0];
     const double *const y = simulation->state->y;
     for (int n = 0; n <= N_STEPS; n++) plate.phi[n] = n == 0 ? 0.5 : linear_theory_wagner(2 * n * step);

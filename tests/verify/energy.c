@@ -113,11 +113,10 @@ static double body_energy(const struct diagnostics_fish *fish) {
 // a default fish, but for fewer nodes, n_beats beats after a start with this speed
 static struct beat last_beat(double speed, int n_beats) {
     enum { PER_BEAT = 50 };
-    struct simulation *const simulation =
-        verify_open(VERIFY_DEFAULTS
-                    "format: 1\ntime: {end: %d, shedding_interval: 0.02, output_interval: 0.02}\n"
-                    "fish: [{nodes: 7, sheet_points: 33, start: {speed: %g}}]\n",
-                    n_beats, speed);
+    struct simulation *const simulation = verify_open(
+        "format: 1\ntime: {end: %d, shedding_interval: 0.02, output_interval: 0.02}\n"
+        "fish: [{nodes: 7, sheet_points: 33, start: {speed: %g}}]\n",
+        n_beats, speed);
     const struct diagnostics_fish *const fish = &simulation->diagnostics->fish[0];
     struct beat beat = {0};
     for (int i = 0; i <= PER_BEAT; i++) {

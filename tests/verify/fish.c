@@ -14,7 +14,10 @@ struct swim {
 // the steady state of a default fish with some keys; school: the other sections of the case
 static struct swim steady_swim(const char *school, const char *keys) {
     char text[512];
-    snprintf(text, sizeof text, "format: 1\n" VERIFY_DEFAULTS "%sfish: [{%s}]\n", school, keys);
+    snprintf(text, sizeof text,
+             "format: 1\n"
+             "%sfish: [{%s}]\n",
+             school, keys);
     struct verify_search search;
     verify_search_open(&search, text);
     verify_ok(steady_search_run(&search.problem));
@@ -97,10 +100,9 @@ static void refine_all(void) {
 
 // the cost of the last of eight beats from rest
 static double cost_from_rest(double modulus, double rtol) {
-    struct simulation *const simulation =
-        verify_open("format: 1\n" VERIFY_DEFAULTS BODY "time: {end: 8}\nsolver: {rtol: %g}\nfish: [{" REACTIVE
-                    "body: {modulus: %g}}]\n",
-                    rtol, modulus);
+    struct simulation *const simulation = verify_open(
+        "format: 1\n" BODY "time: {end: 8}\nsolver: {rtol: %g}\nfish: [{" REACTIVE "body: {modulus: %g}}]\n", rtol,
+        modulus);
     verify_run(simulation, 8);
     simulate_measure(simulation);
     const struct diagnostics_fish *const fish = &simulation->diagnostics->fish[0];

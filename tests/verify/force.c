@@ -12,7 +12,7 @@
 #include "fish/fish_motion.h"
 #include "verify.h"
 
-#define STILL "format: 1\nwake: {smoothing: 1.0e+6}\n"
+#define STILL VERIFY_ARTICLE "format: 1\nwake: {smoothing: 1.0e+6}\n"
 #define IDEAL                                                                                                 \
     "force: reactive, sheet_points: 5, start: {speed: 0}, body: {section: mean, density: 1000, modulus: %g, " \
     "bending_damping: 0, stretching_damping: 0, relaxation_time: %g}, drag: {tangential: 0, normal: 0}, "     \

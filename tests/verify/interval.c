@@ -37,15 +37,14 @@ static int is_sheet(const struct variant *variant) {
 
 static void run_fish(const struct variant *variant, double interval, struct path *path) {
     const int n_sheet = is_sheet(variant) ? 1 + (int)lround(32 * sqrt(longest / interval)) : 65;
-    struct simulation *const simulation =
-        verify_open(VERIFY_DEFAULTS
-                    "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
-                    "wake: {shedding: %s, removed_circulation: %s, lifetime: 1, decay: 0.2}\n"
-                    "solver: {rtol: 1e-9, order: 5}\n"
-                    "fish: [{nodes: 7, sheet_points: %d, force: %s, start: {speed: %g},\n"
-                    "  body: {thickness: 0.2, depth: 0.25, modulus: 1.0e+5}, drag: {normal: %d}}]\n",
-                    N_TIMES * longest, interval, N_TIMES * longest, variant->shedding, variant->removed, n_sheet,
-                    variant->force, variant->speed, strcmp(variant->force, "pressure") != 0);
+    struct simulation *const simulation = verify_open(
+        "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
+        "wake: {shedding: %s, removed_circulation: %s, lifetime: 1, decay: 0.2}\n"
+        "solver: {rtol: 1e-9, order: 5}\n"
+        "fish: [{nodes: 7, sheet_points: %d, force: %s, start: {speed: %g},\n"
+        "  body: {thickness: 0.2, depth: 0.25, modulus: 1.0e+5}, drag: {normal: %d}}]\n",
+        N_TIMES * longest, interval, N_TIMES * longest, variant->shedding, variant->removed, n_sheet, variant->force,
+        variant->speed, strcmp(variant->force, "pressure") != 0);
     const struct fish *const fish = &simulation->school->fish[0];
     const double *const y = simulation->state->y;
     const int last = fish->n_nodes - 1;

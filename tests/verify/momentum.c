@@ -27,13 +27,13 @@ struct found {
 };
 
 static struct simulation *open_run(const struct run *run) {
-    return verify_open(VERIFY_DEFAULTS
-                       "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
-                       "solver: {rtol: 1.0e-6}\nfluid: {viscosity: %g%s}\nwake: {lifetime: %g, decay: %g}\n"
-                       "defaults: {fish: {sheet_points: %d, body: {thickness: 0.2, depth: 0.25, modulus: 1e6}}}\n"
-                       "fish: [%s]\n",
-                       run->end, run->interval, run->interval, run->viscosity, run->fluid ? run->fluid : "",
-                       run->decays ? 2.0 : 1000.0, run->decays ? 1.5 : 100.0, run->n_sheet, run->fish);
+    return verify_open(
+        "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
+        "solver: {rtol: 1.0e-6}\nfluid: {viscosity: %g%s}\nwake: {lifetime: %g, decay: %g}\n"
+        "defaults: {fish: {sheet_points: %d, body: {thickness: 0.2, depth: 0.25, modulus: 1e6}}}\n"
+        "fish: [%s]\n",
+        run->end, run->interval, run->interval, run->viscosity, run->fluid ? run->fluid : "",
+        run->decays ? 2.0 : 1000.0, run->decays ? 1.5 : 100.0, run->n_sheet, run->fish);
 }
 
 static double momentum_of(const struct simulation *simulation) {

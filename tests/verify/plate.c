@@ -41,7 +41,6 @@ static const struct resolution smoothed = {0.01, 0.2, 0.05, 21, "edge", "chebysh
 static struct simulation *open_plate(const struct resolution *with, double end, const double velocity[2],
                                      const char *motion) {
     return verify_open(
-        VERIFY_DEFAULTS
         "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
         "fluid: {velocity: [%.17g, %.17g]}\nwake: {smoothing: %.17g, lifetime: 1000, shedding: %s}\n"
         "sheet: {smoothing: %.17g, kutta: %s, collocation: %s}\nsolver: {rtol: 1e-6}\nfish:\n"

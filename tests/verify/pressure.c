@@ -20,17 +20,16 @@ struct plate {
 };
 
 static struct simulation *open_plate(const struct plate *plate) {
-    return verify_open(VERIFY_DEFAULTS
-                       "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
-                       "solver: {rtol: 1.0e-6}\nfluid: {density: 1, viscosity: 0}\n"
-                       "wake: {lifetime: 1000, smoothing: %.17g%s}\nfish:\n"
-                       "  - {nodes: %d, sheet_points: %d, " VERIFY_ATTACHED
-                       ", wave: {amplitude: 0, frequency: 0},\n     start: {speed: 1},\n"
-                       "     body: {profile: uniform, thickness: 0.02, depth: 1, density: 1},\n"
-                       "     motion: {prescribed: all, %s}}\n",
-                       plate->end, plate->interval, plate->interval, plate->smoothing,
-                       plate->is_uniform ? ", taper: 0, taper_beside: 0" : "", plate->nodes, plate->n_sheet,
-                       plate->motion);
+    return verify_open(
+        "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
+        "solver: {rtol: 1.0e-6}\nfluid: {density: 1, viscosity: 0}\n"
+        "wake: {lifetime: 1000, smoothing: %.17g%s}\nfish:\n"
+        "  - {nodes: %d, sheet_points: %d, " VERIFY_ATTACHED
+        ", wave: {amplitude: 0, frequency: 0},\n     start: {speed: 1},\n"
+        "     body: {profile: uniform, thickness: 0.02, depth: 1, density: 1},\n"
+        "     motion: {prescribed: all, %s}}\n",
+        plate->end, plate->interval, plate->interval, plate->smoothing,
+        plate->is_uniform ? ", taper: 0, taper_beside: 0" : "", plate->nodes, plate->n_sheet, plate->motion);
 }
 
 /* The force of the fluid at an event, N, and the moment about the nose, N m. */
@@ -239,15 +238,14 @@ static void self_propelled(double amplitude, const char *wake, int per_period, i
     const struct linear_theory_plate plate = {2, 1, 1, 2 * pi};
     const double speed = linear_theory_heaving_speed(&plate, amplitude, 0.04), k = 2 * pi / speed;
     const double complex c = linear_theory_theodorsen(k);
-    struct simulation *const simulation =
-        verify_open(VERIFY_DEFAULTS
-                    "format: 1\ntime: {end: %d, shedding_interval: %.17g, output_interval: %.17g}\n"
-                    "fluid: {density: 1, viscosity: %.17g}\nwake: {%ssmoothing: 0.05}\nfish:\n"
-                    "  - {length: 2, nodes: 17, sheet_points: 33, " VERIFY_ATTACHED
-                    ", wave: {amplitude: 0, frequency: 0}, start: {speed: %.17g},\n"
-                    "     body: {profile: uniform, thickness: 0.1, depth: 0.5, density: 4.8, modulus: 1.0e+5},\n"
-                    "     motion: {prescribed: all, surge: free, heave: %g, frequency: 1}}\n",
-                    n_periods, 1.0 / per_period, 1.0 / per_period, pow(0.04 / 1.328, 2) / 2, wake, speed, amplitude);
+    struct simulation *const simulation = verify_open(
+        "format: 1\ntime: {end: %d, shedding_interval: %.17g, output_interval: %.17g}\n"
+        "fluid: {density: 1, viscosity: %.17g}\nwake: {%ssmoothing: 0.05}\nfish:\n"
+        "  - {length: 2, nodes: 17, sheet_points: 33, " VERIFY_ATTACHED
+        ", wave: {amplitude: 0, frequency: 0}, start: {speed: %.17g},\n"
+        "     body: {profile: uniform, thickness: 0.1, depth: 0.5, density: 4.8, modulus: 1.0e+5},\n"
+        "     motion: {prescribed: all, surge: free, heave: %g, frequency: 1}}\n",
+        n_periods, 1.0 / per_period, 1.0 / per_period, pow(0.04 / 1.328, 2) / 2, wake, speed, amplitude);
     verify_run(simulation, n_periods);
     simulate_measure(simulation);
     const char *const which = *wake ? "" : ", default wake";

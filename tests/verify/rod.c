@@ -47,10 +47,10 @@ static double deflection(int nodes, double load) {
     const double stiffness = modulus_of(thin) * M_PI * 0.25 * pow(thin, 3) / 64;
     // a relaxation time of 0.4 s damps the first mode and the highest ones at a rate of about 2.5 per second: after
     // 12 s 1e-13 of the motion is left
-    struct simulation *const simulation =
-        verify_open("format: 1\ntime: {end: 12, shedding_interval: 0.25}\nsolver: {rtol: 1.0e-6}\n" ROD PASSIVE
-                    "    motion: {prescribed: head, speed: 0}\n    load: {tip: [0, %.17g]}\n",
-                    nodes, "mean", thin, modulus_of(thin), 0.4, load * stiffness);
+    struct simulation *const simulation = verify_open(
+        VERIFY_ARTICLE "format: 1\ntime: {end: 12, shedding_interval: 0.25}\nsolver: {rtol: 1.0e-6}\n" ROD PASSIVE
+                       "    motion: {prescribed: head, speed: 0}\n    load: {tip: [0, %.17g]}\n",
+        nodes, "mean", thin, modulus_of(thin), 0.4, load * stiffness);
     verify_run(simulation, 12);
     const struct fish *const fish = simulation->school->fish;
     return simulation->state->y[fish->at.y + nodes - 1];
@@ -145,9 +145,10 @@ static double *lateral_matrix(struct simulation *simulation, int *n) {
 
 // beta L of the first three modes that are not rigid
 static void wave_numbers(int nodes, const char *section, int clamped, double beta[3]) {
-    struct simulation *const simulation = verify_open(
-        "format: 1\ntime: {end: 1, shedding_interval: 0.25}\n" ROD PASSIVE "    motion: {prescribed: %s, speed: 0}\n",
-        nodes, section, thin, modulus_of(thin), 0.0, clamped ? "head" : "none");
+    struct simulation *const simulation =
+        verify_open(VERIFY_ARTICLE "format: 1\ntime: {end: 1, shedding_interval: 0.25}\n" ROD PASSIVE
+                                   "    motion: {prescribed: %s, speed: 0}\n",
+                    nodes, section, thin, modulus_of(thin), 0.0, clamped ? "head" : "none");
     int n;
     double *const matrix = lateral_matrix(simulation, &n);
     // Jacobi's method converges quadratically: the sweep after one that found 1e-20 of the diagonal finds nothing
@@ -213,10 +214,10 @@ static void published_head(void) {
 
 // a rod that relaxes to the natural shape within a second
 static struct simulation *curled_rod(int nodes, int reference_nodes, const char *wave, double bias) {
-    struct simulation *const simulation =
-        verify_open("format: 1\ntime: {end: 12, shedding_interval: 0.25}\nsolver: {rtol: 1.0e-6}\n" ROD
-                    "    reference_nodes: %d\n    wave: {%s, frequency: 0, ramp: 1}\n    control: {bias: %.17g}\n",
-                    nodes, "mean", thin, modulus_of(thin), 0.1, reference_nodes, wave, bias);
+    struct simulation *const simulation = verify_open(
+        VERIFY_ARTICLE "format: 1\ntime: {end: 12, shedding_interval: 0.25}\nsolver: {rtol: 1.0e-6}\n" ROD
+                       "    reference_nodes: %d\n    wave: {%s, frequency: 0, ramp: 1}\n    control: {bias: %.17g}\n",
+        nodes, "mean", thin, modulus_of(thin), 0.1, reference_nodes, wave, bias);
     verify_run(simulation, 12);
     return simulation;
 }
@@ -318,10 +319,10 @@ static void strike(struct simulation *simulation) {
 
 // relative changes of momentum, angular momentum and energy over 2 s, seven periods of the first mode
 static struct invariants drift(double thickness, double rtol, int order, double *step) {
-    struct simulation *const simulation = verify_open(
-        "format: 1\ntime: {end: 2, shedding_interval: 0.5}\n"
-        "solver: {rtol: %g, order: %d, max_steps: 1000000}\n" ROD PASSIVE,
-        rtol, order, 11, "mean", thickness, modulus_of(thickness), 0.0);
+    struct simulation *const simulation = verify_open(VERIFY_ARTICLE
+                                                      "format: 1\ntime: {end: 2, shedding_interval: 0.5}\n"
+                                                      "solver: {rtol: %g, order: %d, max_steps: 1000000}\n" ROD PASSIVE,
+                                                      rtol, order, 11, "mean", thickness, modulus_of(thickness), 0.0);
     strike(simulation);
     const struct invariants before = invariants_of(simulation);
     verify_run(simulation, 2);

@@ -93,17 +93,17 @@ static const struct variant usual = {.interval = 0.02,
 
 // Three different fish near each other, steering by different control laws. The muscles start smoothly.
 static struct simulation *open_school(const struct variant *variant) {
-    return verify_open(
-        "format: 1\nname: school\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
-        "%ssolver: {rtol: %.17g, order: %d}\ndefaults: {fish: {control: {law: heading}}}\nfish:\n"
-        "  - {name: leader, body: {modulus: %.17g}}\n"
-        "  - {name: side, nodes: 5, sheet_points: 13, length: 0.8, body: {modulus: %.17g},\n"
-        "     wave: {frequency: 1.25, phase: 90}, control: {desired_heading: 185},\n"
-        "     start: {position: [0.3, 0.5], heading: 170, speed: 0.9}}\n"
-        "  - {name: behind, length: 0.9, sheet_points: 17, body: {modulus: %.17g}, wave: {phase: 200},\n"
-        "     start: {position: [1.3, 0.15]}}\n",
-        variant->end, variant->interval, variant->end, variant->sheets, variant->rtol, variant->order,
-        1e6 / variant->softness, 3e5 / variant->softness, 2e6 / variant->softness);
+    return verify_open(VERIFY_ARTICLE
+                       "format: 1\nname: school\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
+                       "%ssolver: {rtol: %.17g, order: %d}\ndefaults: {fish: {control: {law: heading}}}\nfish:\n"
+                       "  - {name: leader, body: {modulus: %.17g}}\n"
+                       "  - {name: side, nodes: 5, sheet_points: 13, length: 0.8, body: {modulus: %.17g},\n"
+                       "     wave: {frequency: 1.25, phase: 90}, control: {desired_heading: 185},\n"
+                       "     start: {position: [0.3, 0.5], heading: 170, speed: 0.9}}\n"
+                       "  - {name: behind, length: 0.9, sheet_points: 17, body: {modulus: %.17g}, wave: {phase: 200},\n"
+                       "     start: {position: [1.3, 0.15]}}\n",
+                       variant->end, variant->interval, variant->end, variant->sheets, variant->rtol, variant->order,
+                       1e6 / variant->softness, 3e5 / variant->softness, 2e6 / variant->softness);
 }
 
 static struct ends run_school(const struct variant *variant) {
@@ -114,10 +114,11 @@ static struct ends run_school(const struct variant *variant) {
 
 // one fish of the usual kind, with further keys of the fish
 static struct ends run_fish(double rtol, int order, const char *sheets, const char *keys) {
-    struct simulation *simulation = verify_open(
-        "format: 1\nname: fish\ntime: {end: %.17g, shedding_interval: 0.02, output_interval: %.17g}\n"
-        "wake: {lifetime: 4}\n%ssolver: {rtol: %.17g, order: %d}\nfish:\n  - {name: fish%s}\n",
-        end_time, end_time, sheets, rtol, order, keys);
+    struct simulation *simulation =
+        verify_open(VERIFY_ARTICLE
+                    "format: 1\nname: fish\ntime: {end: %.17g, shedding_interval: 0.02, output_interval: %.17g}\n"
+                    "wake: {lifetime: 4}\n%ssolver: {rtol: %.17g, order: %d}\nfish:\n  - {name: fish%s}\n",
+                    end_time, end_time, sheets, rtol, order, keys);
     verify_run(simulation, end_time);
     return ends_of(simulation, label);
 }

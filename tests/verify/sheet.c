@@ -127,6 +127,7 @@ static void probe_solve(struct probe *probe, enum closure closure) {
 static struct probe probe_open(const struct scheme *scheme, int n, int n_nodes, const char *prescribed) {
     struct probe probe = {.n = n};
     probe.simulation = verify_open(
+        VERIFY_ARTICLE
         "format: 1\ntime: {end: 1, shedding_interval: 0.1, output_interval: 1}\nfluid: {velocity: [%.17g, %.17g]}\n"
         "sheet: {kutta: rate, curve: %s, collocation: %s}\nfish:\n"
         "  - {nodes: %d, sheet_points: %d, wave: {amplitude: 0}, start: {heading: 180, speed: 0},\n"

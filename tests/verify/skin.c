@@ -67,16 +67,15 @@ static void add_wake(const struct wake *wake, double complex zeta, struct sums *
 static void check_passing_vortex(void) {
     const double circulation = 0.3, place[] = {0.1, 0.5, 0.9}, times[] = {0.25, 0.5, 0.75};
     const int is_fast = verify_is_fast();
-    struct simulation *const simulation =
-        verify_open(VERIFY_DEFAULTS
-                    "format: 1\ntime: {end: 1, shedding_interval: %g}\n"
-                    "fluid: {density: 1, viscosity: 0, velocity: [1, 0]}\n"
-                    "wake: {lifetime: 1000, decay: 0, smoothing: 0.003, taper: 0, taper_beside: 0,\n"
-                    "       vortices: [[-0.2, 0.2, %g]]}\n"
-                    "fish: [{nodes: 9, sheet_points: %d, sensors: [0.1, 0.5, 0.9], " VERIFY_ATTACHED
-                    ",\n        wave: {amplitude: 0, frequency: 0}, motion: {prescribed: all},\n"
-                    "        body: {profile: uniform, thickness: 1e-4, depth: 1}}]\n",
-                    is_fast ? 0.01 : 0.0025, circulation, is_fast ? 65 : 129);
+    struct simulation *const simulation = verify_open(
+        "format: 1\ntime: {end: 1, shedding_interval: %g}\n"
+        "fluid: {density: 1, viscosity: 0, velocity: [1, 0]}\n"
+        "wake: {lifetime: 1000, decay: 0, smoothing: 0.003, taper: 0, taper_beside: 0,\n"
+        "       vortices: [[-0.2, 0.2, %g]]}\n"
+        "fish: [{nodes: 9, sheet_points: %d, sensors: [0.1, 0.5, 0.9], " VERIFY_ATTACHED
+        ",\n        wave: {amplitude: 0, frequency: 0}, motion: {prescribed: all},\n"
+        "        body: {profile: uniform, thickness: 1e-4, depth: 1}}]\n",
+        is_fast ? 0.01 : 0.0025, circulation, is_fast ? 65 : 129);
     for (int i = 0; i < (is_fast ? 2 : 3); i++) {
         verify_run(simulation, times[i]);
         simulate_measure(simulation);
@@ -105,7 +104,6 @@ static void check_gust(double k, double bound) {
     const double v = 0.001, omega = 2 * k, period = 2 * pi / omega, place[] = {0.1, 0.5, 0.9}, angle = 20 * pi / 180;
     const int per_period = verify_is_fast() ? 100 : 200, n_periods = 4;
     struct simulation *const simulation = verify_open(
-        VERIFY_DEFAULTS
         "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
         "fluid: {density: 1, viscosity: 0, velocity: [%.17g, %.17g], gust: {amplitude: %g, frequency: %.17g}}\n"
         "wake: {lifetime: 1000, decay: 0}\n"
@@ -164,13 +162,12 @@ static void check_friction_at_rest(void) {
     } bodies[] = {{"plate", "Blasius", 1e-4, 2 * 1.328 / 31.6227766, 0.012},
                   {"ellipse of 12 %", "Navier-Stokes", 0.12, 0.0995, 0.05}};
     for (int i = 0; i < 2; i++) {
-        struct simulation *const simulation =
-            verify_open(VERIFY_DEFAULTS
-                        "format: 1\ntime: {end: 1, shedding_interval: 0.01}\nfluid: {density: 1, viscosity: 1e-3}\n"
-                        "fish: [{force: pressure, pressure: {span: infinite}, start: {speed: 1}, wave: {amplitude: 0, "
-                        "frequency: 0},\n"
-                        "        body: {profile: uniform, thickness: %g, depth: 1}, motion: {prescribed: all}}]\n",
-                        bodies[i].thickness);
+        struct simulation *const simulation = verify_open(
+            "format: 1\ntime: {end: 1, shedding_interval: 0.01}\nfluid: {density: 1, viscosity: 1e-3}\n"
+            "fish: [{force: pressure, pressure: {span: infinite}, start: {speed: 1}, wave: {amplitude: 0, "
+            "frequency: 0},\n"
+            "        body: {profile: uniform, thickness: %g, depth: 1}, motion: {prescribed: all}}]\n",
+            bodies[i].thickness);
         const struct frictions mean = mean_friction(simulation, 0, 0.02);
         verify_relative(verify_text("%s at Reynolds number 1000: friction of both sides", bodies[i].name),
                         bodies[i].source, bodies[i].reference, 2 * mean.sides, bodies[i].bound);

@@ -216,6 +216,7 @@ static struct simulation *open_choice(const int *choice) {
     const char *word[N_OPTIONS];
     for (int i = 0; i < N_OPTIONS; i++) word[i] = options[i].words[choice[i]];
     return verify_open(
+        VERIFY_ARTICLE
         "format: 1\ntime: {end: 1, shedding_interval: 0.01}\n"
         "fluid: {velocity: [0.3, -0.2], shear: 0.2, gust: {amplitude: 0.1, frequency: 1}}\n"
         "sheet: {%s, %s}\nwake: {%s}\nfish:\n  - nodes: 5\n    sheet_points: 9\n    wave: {ramp: 0}\n"
@@ -227,7 +228,6 @@ static struct simulation *open_second(const int *choice) {
     const char *word[N_SECOND];
     for (int i = 0; i < N_SECOND; i++) word[i] = second[i].words[choice[i]];
     return verify_open(
-        VERIFY_DEFAULTS
         "format: 1\ntime: {end: 1, shedding_interval: 0.01}\n"
         "fluid: {velocity: [0.3, -0.2], shear: 0.2, gust: {amplitude: 0.1, frequency: 1}}\n"
         "wake: {%s}\nsheet: {%s, collocation: %s}\nfish:\n  - nodes: 5\n    sheet_points: 9\n    wave: {ramp: 0}\n"
@@ -278,7 +278,8 @@ static void all_options(void) {
     // and nearby fish, coupled in the Jacobian
     for (int number = 0; number < 8; number++) {
         choose(number, 3, options, choice);
-        examine(verify_open("format: 1\ntime: {end: 1, shedding_interval: 0.01}\nsheet: {%s, %s}\nwake: {%s}\n"
+        examine(verify_open(VERIFY_ARTICLE
+                            "format: 1\ntime: {end: 1, shedding_interval: 0.01}\nsheet: {%s, %s}\nwake: {%s}\n"
                             "defaults: {fish: {nodes: 5, sheet_points: 9, wave: {ramp: 0}, control: {law: heading}}}\n"
                             "fish:\n  - start: {position: [0, 0]}\n  - start: {position: [0.2, 0.3]}\n",
                             options[0].words[choice[0]], options[1].words[choice[1]], options[2].words[choice[2]]),
@@ -300,10 +301,11 @@ static void refinement(void) {
     static const int points[4] = {11, 21, 41, 81};
     static const char *const rules[2] = {"chebyshev", "midpoint"};
     for (int i = 0; i < 8; i++) {
-        struct simulation *const simulation = verify_open(
-            "format: 1\ntime: {end: 1, shedding_interval: 0.01}\nsheet: {collocation: %s}\n"
-            "fish:\n  - {nodes: %d, sheet_points: %d, control: {law: heading}}\n",
-            rules[i / 4], (points[i % 4] + 1) / 2, points[i % 4]);
+        struct simulation *const simulation =
+            verify_open(VERIFY_ARTICLE
+                        "format: 1\ntime: {end: 1, shedding_interval: 0.01}\nsheet: {collocation: %s}\n"
+                        "fish:\n  - {nodes: %d, sheet_points: %d, control: {law: heading}}\n",
+                        rules[i / 4], (points[i % 4] + 1) / 2, points[i % 4]);
         const double condition = 1 / condition_of(simulation, &residual_run);
         verify_point("condition of the start", rules[i / 4], points[i % 4], condition);
         char name[80];
@@ -341,6 +343,7 @@ static int jacobian_callback(sunrealtype t, sunrealtype cj, N_Vector y, N_Vector
 static int calculate(struct simulation *simulation, double *y, double *yp, double *kind, double *tolerance) {
     const int n = simulation->school->n_unknowns;
     struct correction correction = {.simulation = simulation};
+    const struct linear_tolerance linear_tolerance = {.relative = 1e-10};
     double *const values[4] = {y, yp, kind, tolerance};
     struct sundials_context context;
     N_Vector vector[4];
@@ -348,7 +351,7 @@ static int calculate(struct simulation *simulation, double *y, double *yp, doubl
     sundials_context_create(&context, arena, n, 1, &correction.failure);
     for (int i = 0; i < 4; i++) vector[i] = sundials_context_vector(&context, values[i]);
     correction.jacobian = jacobian_create(arena, simulation->school);
-    correction.linear = linear_sundials_create(&context, correction.jacobian, 1e-10);
+    correction.linear = linear_sundials_create(&context, correction.jacobian, tolerance, linear_tolerance);
     residual_mask(simulation->residual, correction.jacobian);
     void *ida = IDACreate(context.context);
     int code = IDAInit(ida, value_callback, simulation->state->t, vector[0], vector[1]);
@@ -393,21 +396,21 @@ static double disagreement(struct simulation *simulation) {
 
 static void second_opinion(void) {
     static const struct {
-        const char *name, *keys, *fish, *defaults;
+        const char *name, *keys, *fish, *model;
     } cases[] = {
-        {"defaults", "", "", VERIFY_DEFAULTS},
-        {"article's model", "", "", ""},
-        {"kutta: rate", "sheet: {kutta: rate}\n", "", ""},
-        {"impulsive, between events", "wake: {shedding: impulsive}\n", "", ""},
-        {"prescribed head", "", "motion: {prescribed: head, heave: 0.1, frequency: 1}", ""},
-        {"prescribed head, default model", "", "motion: {prescribed: head, heave: 0.1, frequency: 1}", VERIFY_DEFAULTS},
-        {"law: heading", "", "control: {law: heading, desired_heading: 150}", ""},
-        {"law: averaged_heading", "", "control: {law: averaged_heading, desired_heading: 150}", ""},
+        {"defaults", "", "", ""},
+        {"article's model", "", "", VERIFY_ARTICLE},
+        {"kutta: rate", "sheet: {kutta: rate}\n", "", VERIFY_ARTICLE},
+        {"impulsive, between events", "wake: {shedding: impulsive}\n", "", VERIFY_ARTICLE},
+        {"prescribed head", "", "motion: {prescribed: head, heave: 0.1, frequency: 1}", VERIFY_ARTICLE},
+        {"prescribed head, default model", "", "motion: {prescribed: head, heave: 0.1, frequency: 1}", ""},
+        {"law: heading", "", "control: {law: heading, desired_heading: 150}", VERIFY_ARTICLE},
+        {"law: averaged_heading", "", "control: {law: averaged_heading, desired_heading: 150}", VERIFY_ARTICLE},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct simulation *const simulation =
             verify_open("%sformat: 1\ntime: {end: 1, shedding_interval: 0.01}\n%sfish:\n  - {%s%swave: {ramp: 0}}\n",
-                        cases[i].defaults, cases[i].keys, cases[i].fish, cases[i].fish[0] ? ", " : "");
+                        cases[i].model, cases[i].keys, cases[i].fish, cases[i].fish[0] ? ", " : "");
         char name[80];
         snprintf(name, sizeof name, "IDACalcIC less KINSOL over scale, %s", cases[i].name);
         verify_zero(name, "SUNDIALS' own consistent start, from zero", disagreement(simulation), 1e-10);

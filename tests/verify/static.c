@@ -26,18 +26,17 @@ static const char pressure[] = VERIFY_ATTACHED,
                   drag_alone[] = "force: reactive, drag: {tangential: 0}, added_mass: {coefficient: 0}";
 
 static struct simulation *open_body(const struct body *body) {
-    return verify_open(VERIFY_DEFAULTS
-                       "format: 1\ntime: {end: %.17g, shedding_interval: 0.04}\n"
-                       "fluid: {density: 1, velocity: [%.17g, 0]%s}\nwake: {lifetime: %.17g}\nfish:\n"
-                       "  - {nodes: %d, sheet_points: %d, wave: {amplitude: 0, frequency: 0}, %s,\n"
-                       "     body: {profile: uniform, thickness: %.17g, depth: %.17g, density: 20, modulus: %.17g,\n"
-                       "            relaxation_time: 0.2},\n"
-                       "     start: {heading: %.17g, speed: 0}, motion: {prescribed: %s, speed: 0}}\n",
-                       fmax(body->end, 1), body->speed,
-                       body->more == pressure || body->more == finite ? ", viscosity: 0" : "", fmax(body->end / 3, 1),
-                       body->n_nodes, 2 * body->n_nodes - 1, body->more, body->thickness,
-                       body->depth > 0 ? body->depth : 1, body->stiffness / (pi / 64 * pow(body->thickness, 3)),
-                       180 - body->angle, body->prescribed);
+    return verify_open(
+        "format: 1\ntime: {end: %.17g, shedding_interval: 0.04}\n"
+        "fluid: {density: 1, velocity: [%.17g, 0]%s}\nwake: {lifetime: %.17g}\nfish:\n"
+        "  - {nodes: %d, sheet_points: %d, wave: {amplitude: 0, frequency: 0}, %s,\n"
+        "     body: {profile: uniform, thickness: %.17g, depth: %.17g, density: 20, modulus: %.17g,\n"
+        "            relaxation_time: 0.2},\n"
+        "     start: {heading: %.17g, speed: 0}, motion: {prescribed: %s, speed: 0}}\n",
+        fmax(body->end, 1), body->speed, body->more == pressure || body->more == finite ? ", viscosity: 0" : "",
+        fmax(body->end / 3, 1), body->n_nodes, 2 * body->n_nodes - 1, body->more, body->thickness,
+        body->depth > 0 ? body->depth : 1, body->stiffness / (pi / 64 * pow(body->thickness, 3)), 180 - body->angle,
+        body->prescribed);
 }
 
 // the equilibrium by `shoal steady`

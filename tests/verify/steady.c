@@ -100,21 +100,20 @@ static void compare(const struct swimmer *swimmer) {
 #define TIME "format: 1\ntime: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
 static const struct swimmer swimmers[] = {
-    {"default fish", VERIFY_DEFAULTS TIME "fish: [{start: {speed: 0.5}}]\n", true, 20, 30},
-    {"stiff fish", VERIFY_DEFAULTS TIME "fish: [{body: {modulus: 1e7}}]\n", true, 20, 30},
+    {"default fish", TIME "fish: [{start: {speed: 0.5}}]\n", true, 20, 30},
+    {"stiff fish", TIME "fish: [{body: {modulus: 1e7}}]\n", true, 20, 30},
     {"fish with pressure",
      // with a wake of 8 beats a turn, which the run does not excite, decays more slowly than the speed
-     VERIFY_DEFAULTS TIME
-     "fish: [{force: pressure, pressure: {span: infinite}, start: {speed: 0.5}, body: {depth: 1}}]\n",
-     true, 20, 30},
-    {"fish with the reactive force", VERIFY_DEFAULTS TIME "fish: [{force: reactive}]\n", true, 20, 30},
+     TIME "fish: [{force: pressure, pressure: {span: infinite}, start: {speed: 0.5}, body: {depth: 1}}]\n", true, 20,
+     30},
+    {"fish with the reactive force", TIME "fish: [{force: reactive}]\n", true, 20, 30},
     {"heaving plate",
-     VERIFY_DEFAULTS TIME "solver: {rtol: 1e-6}\n"
-                          "fluid: {density: 1, viscosity: 4.536e-4}\nwake: {lifetime: 8, smoothing: 0.1}\n"
-                          "fish: [{length: 2, force: pressure, pressure: {span: infinite}, start: {speed: 4}, wave: "
-                          "{amplitude: 0, frequency: 0},\n"
-                          "  body: {profile: uniform, thickness: 0.1, depth: 0.5, density: 1.5915, modulus: 1e5},\n"
-                          "  motion: {prescribed: all, surge: free, heave: 0.1, frequency: 1}}]\n",
+     TIME "solver: {rtol: 1e-6}\n"
+          "fluid: {density: 1, viscosity: 4.536e-4}\nwake: {lifetime: 8, smoothing: 0.1}\n"
+          "fish: [{length: 2, force: pressure, pressure: {span: infinite}, start: {speed: 4}, wave: "
+          "{amplitude: 0, frequency: 0},\n"
+          "  body: {profile: uniform, thickness: 0.1, depth: 0.5, density: 1.5915, modulus: 1e5},\n"
+          "  motion: {prescribed: all, surge: free, heave: 0.1, frequency: 1}}]\n",
      false, 20, 30},
 };
 
@@ -152,18 +151,17 @@ static void circle(const char *name, const char *text) {
 }
 
 static void circles(void) {
-    circle("fish in a wide circle", VERIFY_DEFAULTS TIME "fish: [{start: {speed: 0.6}, control: {bias: 0.03}}]\n");
-    circle("fish in a circle", VERIFY_DEFAULTS TIME "fish: [{start: {speed: 0.6}, control: {bias: 0.1}}]\n");
-    circle("fish in a narrow circle", VERIFY_DEFAULTS TIME "fish: [{start: {speed: 0.6}, control: {bias: 0.4}}]\n");
+    circle("fish in a wide circle", TIME "fish: [{start: {speed: 0.6}, control: {bias: 0.03}}]\n");
+    circle("fish in a circle", TIME "fish: [{start: {speed: 0.6}, control: {bias: 0.1}}]\n");
+    circle("fish in a narrow circle", TIME "fish: [{start: {speed: 0.6}, control: {bias: 0.4}}]\n");
     circle("fish with pressure in a circle",
-           VERIFY_DEFAULTS TIME "fish: [{force: pressure, pressure: {span: infinite}, control: {bias: 0.2}}]\n");
+           TIME "fish: [{force: pressure, pressure: {span: infinite}, control: {bias: 0.2}}]\n");
 }
 
 /* cases/formation.yaml */
-#define PAIR                                           \
-    VERIFY_DEFAULTS TIME                               \
-        "steady: {formation: true, tolerance: 3e-4}\n" \
-        "defaults: {fish: {force: reactive, start: {speed: 0.8}, control: {law: heading, desired_heading: 180}}}\n"
+#define PAIR                                            \
+    TIME "steady: {formation: true, tolerance: 3e-4}\n" \
+         "defaults: {fish: {force: reactive, start: {speed: 0.8}, control: {law: heading, desired_heading: 180}}}\n"
 
 static void formation(void) {
     struct verify_search found, run;

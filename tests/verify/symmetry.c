@@ -64,7 +64,7 @@ static void write_case(const struct view_point *view, double output_interval, ch
                  "fluid: {velocity: [%.17g, 0]}\nwake: {lifetime: 0.5, decay: 0.2}\n"
                  "solver: {threads: %d, rtol: %.17g, order: %d}\n"
                  "defaults: {fish: {body: {depth: 0.25}, %swave: {ramp: %.17g}}}\nfish:\n",
-                 view->second ? VERIFY_DEFAULTS : "", view->end, interval, output_interval, view->stream, view->threads,
+                 view->second ? "" : VERIFY_ARTICLE, view->end, interval, output_interval, view->stream, view->threads,
                  view->rtol, view->integrator_order, view->second ? "nodes: 7, sheet_points: 21, " : "", view->ramp);
     for (int place = 0; place < N_FISH; place++) {
         const int f = view->order[place];
@@ -270,10 +270,11 @@ static void check_output_interval(void) {
 static struct simulation *run_pair(double apart) {
     char companion[128] = "";
     if (apart > 0) snprintf(companion, sizeof companion, "  - {name: other, start: {position: [0, %.17g]}}\n", apart);
-    struct simulation *simulation = verify_open(
-        "format: 1\nname: pair\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
-        "solver: {rtol: 1e-10, order: 5}\nfish:\n  - {name: fish}\n%s",
-        usual.end, interval, usual.end, companion);
+    struct simulation *simulation =
+        verify_open(VERIFY_ARTICLE
+                    "format: 1\nname: pair\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
+                    "solver: {rtol: 1e-10, order: 5}\nfish:\n  - {name: fish}\n%s",
+                    usual.end, interval, usual.end, companion);
     verify_run(simulation, usual.end);
     return simulation;
 }

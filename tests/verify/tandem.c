@@ -26,7 +26,6 @@ static const struct pair of_fang = {2, 0.2, 2, 0.04, 13.25, 0.2, 10, 0, 0};
 static void text_of(const struct pair *pair, int n_fish, const char *keys, size_t size, char *text) {
     const double thickness = 0.05, area = pi / 4 * thickness * pair->length * pair->length;
     const int length = snprintf(text, size,
-                                VERIFY_DEFAULTS
                                 "format: 1\ntime: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
                                 "fluid: {density: 1, viscosity: %.17g}\nwake: {lifetime: %g, decay: 6, smoothing: %g}\n"
                                 "steady: {formation: %s, tolerance: 1e-3}\n"

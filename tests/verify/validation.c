@@ -264,7 +264,6 @@ static double gait_stride(const struct gait *gait, double length, double frequen
         struct verify_search search;
         char text[512];
         snprintf(text, sizeof text,
-                 VERIFY_DEFAULTS
                  "format: 1\ntime: {end: %.17g, shedding_interval: %.17g}\n"
                  "fish: [{length: %.17g, start: {speed: %.17g}, drag: {normal: %g},\n"
                  "  wave: {frequency: %.17g, wavelength: %.17g, amplitude: %.17g, %s},\n"
@@ -356,14 +355,13 @@ static struct coefficients run_foils(double x, double y, int phase) {
     if (!isnan(x)) {
         second = verify_text(", {name: second, start: {position: [%.17g, %.17g]}, motion: {phase: %d}}", x, y, phase);
     }
-    struct simulation *const simulation =
-        verify_open(VERIFY_DEFAULTS
-                    "format: 1\ntime: {end: 6, shedding_interval: 0.01, output_interval: 6}\n"
-                    "fluid: {density: 1, viscosity: 1.25e-3}\ndefaults: {fish: {nodes: 9, force: pressure, "
-                    "pressure: {span: infinite}, start: {speed: %g}, wave: {amplitude: 0, frequency: 0}, "
-                    "body: {profile: uniform, thickness: 0.08, depth: 1}, motion: {prescribed: all, heave: 0.125, "
-                    "pitch: 10, pitch_phase: 90, pivot: 0.33333333, frequency: 1}}}\nfish: [{name: first}%s]\n",
-                    speed, second);
+    struct simulation *const simulation = verify_open(
+        "format: 1\ntime: {end: 6, shedding_interval: 0.01, output_interval: 6}\n"
+        "fluid: {density: 1, viscosity: 1.25e-3}\ndefaults: {fish: {nodes: 9, force: pressure, "
+        "pressure: {span: infinite}, start: {speed: %g}, wave: {amplitude: 0, frequency: 0}, "
+        "body: {profile: uniform, thickness: 0.08, depth: 1}, motion: {prescribed: all, heave: 0.125, "
+        "pitch: 10, pitch_phase: 90, pivot: 0.33333333, frequency: 1}}}\nfish: [{name: first}%s]\n",
+        speed, second);
     verify_run(simulation, 6);
     simulate_measure(simulation);
     const struct diagnostics_fish *const of = &simulation->diagnostics->fish[simulation->school->n_fish - 1];

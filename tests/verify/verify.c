@@ -169,21 +169,15 @@ static struct simulation *start(struct case_values *values) {
 }
 
 struct simulation *verify_open(const char *format, ...) {
-    static const char include[] = "include: [tests/data/small.yaml]\n";
     char text[16384] = "";
     va_list arguments;
     va_start(arguments, format);
-    int length = vsnprintf(text, sizeof text - sizeof include, format, arguments);
+    const int length = vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    // a preset is weaker than an include, and a case of cases/ has all necessary includes
-    const int is_case = strstr(text, "include:") != NULL;
-    if (!strstr(text, VERIFY_DEFAULTS) && !strstr(text, "preset:") && !is_case) {
-        memmove(text + strlen(include), text, (size_t)length + 1);
-        memcpy(text, include, strlen(include));
-        length += (int)strlen(include);
-    }
+    // other includes are those of a case of cases/
+    const char *const folder = strstr(text, VERIFY_ARTICLE) ? "." : "cases";
     struct case_values values;
-    if (case_parse(&values, text, (size_t)length, "verify", is_case ? "cases" : ".", 0, NULL) != STATUS_OK) give_up();
+    if (case_parse(&values, text, (size_t)length, "verify", folder, 0, NULL) != STATUS_OK) give_up();
     return start(&values);
 }
 

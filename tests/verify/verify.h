@@ -77,16 +77,15 @@ double verify_slope(int n, const double *x, const double *y);
 /* A text (printf format) that lives until the next one is made. */
 const char *verify_text(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* A text with this line has the defaults of the program. */
-#define VERIFY_DEFAULTS "# defaults\n"
+/* The line that gives a text the model of the article where it does not say otherwise. */
+#define VERIFY_ARTICLE "include: [tests/verify/data/article.yaml]\n"
 
 /* The keys of a fish with the pressure of attached flow as in linear theory: full suction, and the friction of a
  * laminar boundary layer on a plate. */
 #define VERIFY_ATTACHED "force: pressure, pressure: {span: infinite, suction_limit: 0}, drag: {skin: laminar}"
 
-/* Open a case given as text (printf format), with at most 16 kB, and without VERIFY_DEFAULTS or a preset with the
- * defaults of the article's model (tests/data/small.yaml); the section ends with the message where that fails. The
- * simulation lives until the end of the section; where there are many, simulate_free releases each earlier. */
+/* Open a case given as text (printf format), with at most 16 kB; the section ends with the message where that fails.
+ * The simulation lives until the end of the section; where there are many, simulate_free releases each earlier. */
 struct simulation *verify_open(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /* Open a case of cases/, with n assignments "path=value". */

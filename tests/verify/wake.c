@@ -15,6 +15,7 @@ static const double delta = 0.2; /* smoothing, m: fish of length 1 m with the de
 
 static struct simulation *still_water(double interval) {
     return verify_open(
+        VERIFY_ARTICLE
         "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
         "wake: {smoothing: %.17g, lifetime: 1000, tolerance: 1e-8}\n"
         "defaults: {fish: {nodes: 4, sheet_points: 5, wave: {amplitude: 0}, motion: {prescribed: all, speed: 0}}}\n"

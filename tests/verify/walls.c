@@ -19,7 +19,6 @@ static const struct {
 static double circulation_between(double distance) {
     const double degree = 0.5, angle = degree * pi / 180;
     struct simulation *const simulation = verify_open(
-        VERIFY_DEFAULTS
         "format: 1\ntime: {end: %.17g, shedding_interval: 0.04, output_interval: 0.04}\n"
         "fluid: {velocity: [1, 0], walls: [%.17g, %.17g]}\nwake: {lifetime: %.17g}\n"
         "fish: [{force: reactive, nodes: 4, wave: {amplitude: 0}, start: {heading: %.17g, position: [%.17g, %.17g]},\n"
@@ -42,10 +41,10 @@ static void check_plate(void) {
 // ---- mirrored fish
 
 static struct simulation *open_fish(const char *force, double rtol, const char *fluid, const char *other) {
-    return verify_open(VERIFY_DEFAULTS
-                       "format: 1\ntime: {end: 1, output_interval: 0.1}\nwake: {tolerance: 0}\nsolver: {rtol: %.17g}\n"
-                       "%sdefaults: {fish: {force: %s}}\nfish: [{start: {position: [0, 0.25]}}%s]\n",
-                       rtol, fluid, force, other);
+    return verify_open(
+        "format: 1\ntime: {end: 1, output_interval: 0.1}\nwake: {tolerance: 0}\nsolver: {rtol: %.17g}\n"
+        "%sdefaults: {fish: {force: %s}}\nfish: [{start: {position: [0, 0.25]}}%s]\n",
+        rtol, fluid, force, other);
 }
 
 // the largest difference of the places of nodes and of the wake of the first fish
@@ -80,12 +79,11 @@ static void check_mirror(const char *force, double bound) {
 
 // a fish that swims against and along the wall of a channel
 static void check_energy(const char *force) {
-    struct simulation *const simulation =
-        verify_open(VERIFY_DEFAULTS
-                    "format: 1\ntime: {end: 3, shedding_interval: 0.02, output_interval: 0.02}\n"
-                    "fluid: {walls: [0, 2]}\n"
-                    "fish: [{force: %s, start: {position: [0, 0.6], heading: 215, speed: 0.8}}]\n",
-                    force);
+    struct simulation *const simulation = verify_open(
+        "format: 1\ntime: {end: 3, shedding_interval: 0.02, output_interval: 0.02}\n"
+        "fluid: {walls: [0, 2]}\n"
+        "fish: [{force: %s, start: {position: [0, 0.6], heading: 215, speed: 0.8}}]\n",
+        force);
     double imbalance = 0, energy = 0, circulation = 0, contact = 0;
     for (int i = 1; i <= 150; i++) {
         verify_run(simulation, 0.02 * i);
@@ -108,16 +106,15 @@ static void check_energy(const char *force) {
 /* Two opposite vortices approach the wall y = 0 and part there: 1/x^2 + 1/y^2 is constant on the way of each (Lamb,
  * Hydrodynamics, section 155). The fish is far away. The error is of second order in the interval. */
 static double dipole_error(double interval, double *parted) {
-    struct simulation *const simulation =
-        verify_open(VERIFY_DEFAULTS
-                    "format: 1\ntime: {end: 5, shedding_interval: %.17g, output_interval: %.17g}\n"
-                    "fluid: {density: 1, viscosity: 0, walls: [0]}\n"
-                    "wake: {lifetime: 1000, decay: 0, smoothing: 0.001, tolerance: 0,\n"
-                    "       vortices: [[-0.5, 2, -6.283185307179586], [0.5, 2, 6.283185307179586]]}\n"
-                    "fish: [{nodes: 5, sheet_points: 33, force: pressure, pressure: {span: infinite}, wave: "
-                    "{amplitude: 0, frequency: 0},\n"
-                    "        motion: {prescribed: all, speed: 0}, start: {position: [1000, 1]}}]\n",
-                    interval, interval);
+    struct simulation *const simulation = verify_open(
+        "format: 1\ntime: {end: 5, shedding_interval: %.17g, output_interval: %.17g}\n"
+        "fluid: {density: 1, viscosity: 0, walls: [0]}\n"
+        "wake: {lifetime: 1000, decay: 0, smoothing: 0.001, tolerance: 0,\n"
+        "       vortices: [[-0.5, 2, -6.283185307179586], [0.5, 2, 6.283185307179586]]}\n"
+        "fish: [{nodes: 5, sheet_points: 33, force: pressure, pressure: {span: infinite}, wave: "
+        "{amplitude: 0, frequency: 0},\n"
+        "        motion: {prescribed: all, speed: 0}, start: {position: [1000, 1]}}]\n",
+        interval, interval);
     double most = 0;
     for (int i = 1; i <= 20; i++) {
         verify_run(simulation, 0.25 * i);
