@@ -108,7 +108,7 @@ one axis every member is a steady state ([steady.md](steady.md#studies-of-steady
 
 With `refine: true` on an axis the study prints orders of convergence ([studies.md](studies.md#convergence)). The first
 key of such an axis is numerical (`nodes`, `sheet_points`, `time.shedding_interval`, `solver.rtol`, `solver.step`,
-`wake.tolerance`, `wake.merge`, `wake.lifetime`) or a length of the model (`wake.smoothing`, `sheet.smoothing`,
+`wake.tolerance`, `wake.lifetime`) or a length of the model (`wake.smoothing`, `sheet.smoothing`,
 `wake.taper`). The axis can also have
 
 | key | meaning |

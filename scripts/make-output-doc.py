@@ -109,7 +109,7 @@ resumed also needs `--checkpoint-at` with the attribute `checkpoint_at`, the tim
 
 ## Attributes
 
-Besides the attributes above a file has `Conventions` (CF-1.10), `title` (the name of the case), `merged_vortices` and
+Besides the attributes above a file has `Conventions` (CF-1.10), `title` (the name of the case) and
 `shoal_schema` (1; a program with another number cannot read the file). Every variable has `long_name` and, except
 strings, `units`. `fish`, `xy`, `node_arc`, `edge_arc`, `joint_arc`, `sheet_arc` and `control_arc` are coordinates.
 """

@@ -819,20 +819,6 @@ def impact(bench):
                f"{edges.min() * edges.shape[1]:.2f}")
 
 
-@table("wake.merge", "vortices at the end", "velocity of the centre of mass [m/s]", "position [m]", "CPU time over none")
-def merge(bench):
-    """error and saving of wake.merge: one fish with force: pressure, a wake of 16 s, 20 s from 1 m/s (minutes)"""
-    case = DEFAULT.replace("end: 8", "end: 20")
-    case = case.replace("{name: fish}", "{name: fish, force: pressure, pressure: {span: infinite}, start: {speed: 1}}")
-    case += "wake: {lifetime: 16}\n"
-    exact, seconds = bench.run(case), bench.seconds(case)
-    for limit in ("1e-5", "1e-4", "1e-3", "1e-2"):
-        run = bench.run(case, f"wake.merge={limit}")
-        errors = [float(np.abs(run[name] - exact[name]).max()) for name in ("com_velocity", "com")]
-        yield (limit, int(run["wake_count"][-1].sum()), *(short(error) for error in errors),
-               f"{bench.seconds(case, f'wake.merge={limit}') / seconds:.2f}")
-
-
 # Two rigid foils of tests/verify/data/school_navier_stokes.csv: chord 1, period 1, Re 1000.
 FOILS = """\
 format: 1
@@ -1030,6 +1016,27 @@ def leg_impulse(bench):
         drag, legs = (abs(float(np.sum((run[key][-1] - run[key][first]) * ahead))) for key in ("external_impulse", "leg_impulse"))
         balance = float(np.linalg.norm(run["momentum_balance"][-1] - run["momentum_balance"][first]))
         yield name, f"{drag:.3f}", f"{legs:.3f}", f"{legs / drag:.2f}", short(balance / drag)
+
+
+NINE = """\
+format: 1
+time: {{end: 3, shedding_interval: {interval}, output_interval: 1}}
+defaults: {{fish: {{start: {{speed: 0.8}}, pressure: {{span: {span}}}}}}}
+fish:
+"""
+
+
+@table("case", "span", "interval", "released", "kept", "balance [N s]")
+def markers(bench):
+    """markers of a wake of three beats, and the momentum balance, of one fish and of nine dense ones"""
+    dense = [f"  - {{start: {{position: [{1.4 * (i // 3) + 0.2 * (i % 3):g}, {0.4 * (i % 3):g}]}}}}\n" for i in range(9)]
+    for name, fish in (("one fish", ["  - {}\n"]), ("nine dense fish", dense)):
+        for span in ("finite", "infinite"):
+            for interval in (0.02, 0.01):
+                run = bench.run(NINE.format(span=span, interval=interval) + "".join(fish))
+                kept = int(run["wake_count"][-1].sum())
+                balance = float(np.linalg.norm(run["momentum_balance"][-1].sum(axis=0)))
+                yield name, span, interval, len(fish) * round(3 / interval), kept, short(balance)
 
 
 # ---- documents ----

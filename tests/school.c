@@ -166,6 +166,27 @@ void school_fill_wakes(struct setup *setup, int n) {
     }
 }
 
+struct wake *school_wake(struct setup *setup, int f, int n, double tail[2]) {
+    const struct fish *const fish = &setup->school->fish[f];
+    struct wake *const wake = &setup->state->wake[f];
+    wake_resize(wake, n);
+    wake->n_old = 0;
+    for (int i = 0; i < n; i++) {
+        wake->x[i] = wake->y[i] = wake->circulation[i] = 0;
+        wake->u[i] = wake->v[i] = wake->u_before[i] = wake->v_before[i] = wake->rate[i] = wake->rate_before[i] = 0;
+        wake->birth[i] = setup->state->t - setup->school->interval * (n - 1 - i);
+    }
+    fish_tail(fish, setup->state->y, tail);
+    wake_set_tail(wake, (const double[]){0, 0}, fish_direction(fish, &fish->tail_tangent, setup->state->y).t);
+    return wake;
+}
+
+void school_shed(struct setup *setup, int f) {
+    struct wake *const wake = &setup->state->wake[f];
+    wake->shed_before = wake->circulation[wake->n_vortex - 1];
+    setup->state->y[setup->school->fish[f].at.circulation] = wake->shed_before;
+}
+
 void school_flow(struct setup *setup, const double *y) {
     flow_gradient(setup->residual->flow, setup->state, setup->t, y, false);
 }

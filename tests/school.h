@@ -49,6 +49,11 @@ struct initial_conditions *school_consistent(struct setup *setup, double t);
 /* Fill the wake of each fish up to n vortices, at random places behind the body. */
 void school_fill_wakes(struct setup *setup, int n);
 
+/* Replace the wake of fish f by n markers at rest, born at the last n events, for the caller to place, with labels;
+ * finds the tail. Then shed the label of the newest marker. */
+struct wake *school_wake(struct setup *setup, int f, int n, double tail[2]);
+void school_shed(struct setup *setup, int f);
+
 /* The fluid's velocity (and gradient) everywhere for the unknowns y at setup->t. */
 void school_flow(struct setup *setup, const double *y);
 

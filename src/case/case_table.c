@@ -239,10 +239,6 @@ const struct key case_table[] = {
                 "beat; 0: direct summation",
      .derived = "solver.rtol/10", .multiple = {0.1, "solver.rtol"}, .cause = "solver.rtol",
      .synonyms = "accuracy theta"},
-    {"wake.merge", REAL, AT(school.wake.merge), "0", FROM_TO(0, 0.1), "",
-     .meaning = "error allowed in the velocity at the bodies due to merging of distant vortices, in body lengths per "
-                "beat; 0: no merging",
-     .synonyms = "coarsen thin"},
     {"wake.spare_vortices", INTEGER, AT(school.wake.spare), "0", FROM_TO(0, 1000000), "",
      .meaning = "number of vortices that a program can add to each wake: doc/python.md, section 2",
      .synonyms = "extra_vortices added_vortices"},

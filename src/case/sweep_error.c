@@ -17,7 +17,6 @@ const struct sweep_error_key sweep_error_keys[SWEEP_N_ERROR_KEYS] = {
     {"solver.rtol", NULL, SWEEP_SPACING, {10, 0}, 0.1, .order = 1},
     {"solver.step", NULL, SWEEP_SPACING, {2, 4}, 0.5, .order = 1},  // of the first order: see sweep_error_order
     {"wake.tolerance", NULL, SWEEP_SPACING, {10, 0}, 0.1, .order = 1},
-    {"wake.merge", NULL, SWEEP_SPACING, {10, 0}, 0.1, .order = 1},
     {"wake.lifetime", "wake.decay", SWEEP_DURATION, {1 / 2.0, 0}, 2, .order = 1},
     {"wake.smoothing", NULL, SWEEP_MODEL, {0, 0}, 0.5, .order = 1},
     {"sheet.smoothing", NULL, SWEEP_MODEL, {0, 0}, 0.5, .order = 1},

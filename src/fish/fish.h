@@ -205,10 +205,10 @@ struct school {
     bool finite;           /* whether the sheets are vortex rings: some fish has force: pressure with span: finite */
     double wake_tolerance; /* estimated error of the velocity of the wakes at the bodies, lengths per beat; 0: none */
 
-    double wake_merge; /* velocity error at a body by merging in one wake, lengths per beat; 0: no merging */
-    int wake_spare;    /* vortices of each wake that may be added from outside: wake_add_vortex, wake_break */
-    int n_vortices;    /* vortices in the fluid at the start, in the wake of the first fish */
-    double *vortices;  /* position, m, and circulation, m2 s-1, of each                    (n_vortices, 3) */
+    double wake_spacing; /* of old markers at most, over the smoothing: wake/stretch.h; 0: none is dropped */
+    int wake_spare;      /* vortices of each wake that may be added from outside: wake_add_vortex, wake_break */
+    int n_vortices;      /* vortices in the fluid at the start, in the wake of the first fish */
+    double *vortices;    /* position, m, and circulation, m2 s-1, of each                    (n_vortices, 3) */
 
     enum contact_action contact; /* of bodies with a gap below contact_range */
     double contact_range;        /* m */

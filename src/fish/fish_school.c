@@ -102,7 +102,7 @@ static void wake_set(struct school *school, const struct school_parameters *para
     school->kutta_ramp = parameters->sheet.kutta_ramp;
     school->removed = wake->removed_circulation;
     school->wake_tolerance = wake->tolerance;
-    school->wake_merge = wake->merge;
+    school->wake_spacing = 0.65;
     school->wake_spare = wake->spare + WAKE_PER_VORTEX * school->n_vortices;
     school->contact = parameters->contact.action;
     school->threads = parameters->threads;

@@ -69,7 +69,6 @@ struct wake_parameters {
     enum shedding shedding;
     enum removed_circulation removed_circulation;
     double tolerance;            /* lengths per beat; 0: exact */
-    double merge;                /* lengths per beat; 0: never */
     int spare;                   /* vortices of each wake that may be added from outside */
     struct number_list vortices; /* in the fluid at the start: rows of position [m] and circulation [m2 s-1] */
     struct street_parameters street;

@@ -165,7 +165,7 @@ void flow_from_nodes(const struct flow *flow, int f, const double *of_nodes, dou
 static void flow_place_wake(const struct flow *flow, const struct state *state, int f, bool is_new) {
     const struct wake *const wake = &state->wake[f];
     struct sheet *const sheet = &flow->fish[f].wake;
-    if (is_new) sheet_build(sheet, &flow->school->fish[f], flow->school, wake);
+    if (is_new) sheet_build(sheet, &flow->school->fish[f], flow->school, wake, state->t);
     sheet_place(sheet, flow->school, wake, state->t, flow->t - state->t);
 }
 

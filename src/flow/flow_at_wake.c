@@ -16,7 +16,7 @@ static void wakes_place(struct flow *flow, const struct state *state) {
         struct flow_fish *const of = &flow->fish[f];
         of->markers.n = 0;
         if (flow_has_free_sheets(flow)) {
-            sheet_markers(&of->markers, &school->fish[f], school, &state->wake[f], state->t, of->nascent);
+            sheet_markers(&of->markers, &of->wake, &school->fish[f], school, &state->wake[f], state->t, of->nascent);
         } else {
             const struct sources *const queue = &of->wake.middles.sources;
             sources_append(&of->markers, queue->n);

@@ -166,7 +166,7 @@ static void add_of_others(const struct flow *flow, const struct state *state, in
     const struct sources *const markers = &of->markers;
     if (school->n_fish == 1 && flow->n_images == 0) return;
     const double least = least_change * fish->strip_depth * fish->strip_depth / 8;
-    struct wake_decay now = {.wake = &state->wake[f], .school = school, .t = state->t};
+    const struct wake *const wake = &state->wake[f];
     const int n_body = fish->depth_varies ? fish->n_control : 0;
     struct changes changes = {.n = 0};
     for (int i = markers->n - 1; i >= -n_body; i--) {
@@ -176,11 +176,9 @@ static void add_of_others(const struct flow *flow, const struct state *state, in
             // b of targets outside the strip is twice as large
             changes.change[to] = 4 * body_change(flow, f, at);
         } else {
-            const int newer = i + 1 < markers->n ? i + 1 : i, older = i > 0 ? i - 1 : 0;
-            const double growth = (markers->leg[older] - markers->leg[newer]) / 2;
-            const double label = wake_next_strength(&now, i);
+            const double growth = sheet_change(&of->wake, wake, i, markers->leg);
             if (!(fabs(growth) > least)) continue;
-            changes.change[to] = -label * growth;
+            changes.change[to] = wake_strength_of(wake, school, state->t, 0, i) * growth;
         }
         changes.x[to] = from->x[at];
         changes.y[to] = from->y[at];

@@ -159,9 +159,9 @@ static double polynomial_error(double axis) {
     return 2 / power;
 }
 
-/* The group of some sources of a wake (wake), or of the body of fish g (NULL). */
+/* The group of some sources of fish g: of the body, or of the released points of a wake (points, wake; or NULL). */
 static struct group group_of(const struct others *others, int g, const struct sources *sources, struct range which,
-                             const struct wake *wake) {
+                             const struct sheet_points *points, const struct wake *wake) {
     struct group group = {
         .sources = which, .half = INFINITY, .leg = INFINITY, .speed = wake ? 0 : others->fish[g].at_event.speed};
     const int last = which.first + which.n - 1;
@@ -176,7 +176,7 @@ static struct group group_of(const struct others *others, int g, const struct so
         group.half = fmin(group.half, sources->half[i]);
         group.leg = fmin(group.leg, sources->leg[i]);
         if (!wake) continue;
-        const int marker = i < wake->n_vortex - 1 ? i + wake->has_markers : i;
+        const int marker = points->newer[i];
         const double speed2 = wake->u[marker] * wake->u[marker] + wake->v[marker] * wake->v[marker];
         group.speed = fmax(group.speed, sqrt(speed2));
     }
@@ -237,7 +237,7 @@ static void remember_fish(struct flow *flow, const struct state *state, int f) {
     // as sources
     const struct sources *const body = &flow->fish[f].body;
     const struct sheet_points *const wake = &flow->fish[f].wake.middles;
-    of->around = group_of(flow->others, f, body, (struct range){0, body->n}, NULL);
+    of->around = group_of(flow->others, f, body, (struct range){0, body->n}, NULL, NULL);
     for (int c = 0; c < body->n; c++) {
         at->q += fabs(body->q[c]);
         at->d += sqrt(body->dx[c] * body->dx[c] + body->dy[c] * body->dy[c]);
@@ -245,7 +245,7 @@ static void remember_fish(struct flow *flow, const struct state *state, int f) {
     for (int k = 0; k < of->n_groups; k++) {
         const int first = k * GROUP, left = wake->n_released - first;
         const struct range which = {first, left < GROUP ? left : GROUP};
-        of->group[k] = group_of(flow->others, f, &wake->sources, which, &state->wake[f]);
+        of->group[k] = group_of(flow->others, f, &wake->sources, which, wake, &state->wake[f]);
     }
     of->whole = (struct range){0, wake->n_released};
     of->radius = 0;
@@ -376,7 +376,8 @@ static void select_at(struct flow *flow, const struct state *state, int f, doubl
     for (int g = 0; g < school->n_fish; g++) {
         struct others_pair *const pair = &others->pair[(size_t)f * (size_t)others->n_fish + (size_t)g];
         const struct others_fish *const from = &others->fish[g];
-        const struct sources *const wake = &flow->fish[g].wake.middles.sources, *const body = &flow->fish[g].body;
+        const struct sheet_points *const wake = &flow->fish[g].wake.middles;
+        const struct sources *const body = &flow->fish[g].body;
         if (has_few(flow, g) && is_beyond(of, from->middle[0], from->middle[1], from->radius)) {
             *pair = (struct others_pair){.is_far_body = true, .by_few = true};
             continue;
@@ -394,7 +395,8 @@ static void select_at(struct flow *flow, const struct state *state, int f, doubl
             const bool are_far = of->is_used && is_far(of, interval, &of_wake, &from->group[k], true, tolerance);
             if (are_far) was_near = false;
             for (int i = which.first; i < which.first + which.n && !are_far; i++) {
-                const struct group one = group_of(others, g, wake, (struct range){i, 1}, &state->wake[g]);
+                const struct group one =
+                    group_of(others, g, &wake->sources, (struct range){i, 1}, wake, &state->wake[g]);
                 const bool near = !of->is_used || !is_far(of, interval, &of_wake, &one, true, tolerance);
                 if (near) near_add(of, i, !was_near);
                 was_near = near;
@@ -407,7 +409,7 @@ static void select_at(struct flow *flow, const struct state *state, int f, doubl
         pair->is_far_body = of->is_used && !was_near;
         if (pair->is_far_body && !is_far(of, interval, &of_body, &from->around, false, tolerance)) {
             for (int c = 0; c < body->n && pair->is_far_body; c++) {
-                const struct group one = group_of(others, g, body, (struct range){c, 1}, NULL);
+                const struct group one = group_of(others, g, body, (struct range){c, 1}, NULL, NULL);
                 pair->is_far_body = is_far(of, interval, &of_body, &one, false, tolerance);
             }
         }

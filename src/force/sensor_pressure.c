@@ -124,16 +124,17 @@ static struct sensor_source sensor_control_source(const struct sensor_targets *a
     return source;
 }
 
-// released source i of a view of a wake, with the rate of the label as a dipole; middles: source i is the middle of
-// stretch i
+// released source i of a view of a wake, with the rate of the label as a dipole
 static struct sensor_source sensor_wake_source(const struct sensor_targets *at, int g,
-                                               const struct sheet_points *points, bool is_middle, int i) {
+                                               const struct sheet_points *points, int i) {
     const struct wake *const wake = &at->state->wake[g];
     const struct sources *const from = &points->sources;
-    const int older = is_middle ? i : points->stretch[i], newer = older + 1;
-    const double xi = is_middle ? 0.5 : points->xi[i], part = is_middle ? 1 : points->part[i];
+    const int older = points->older[i], newer = points->newer[i];
+    const double xi = newer == older ? 0 : points->xi[i];
     const double decay = wake_strength_within(at->flow->school, at->state->t - wake->birth[newer], 0);
-    const double rate = ((1 - xi) * wake->rate[newer] + xi * wake->rate[older]) * part * decay;
+    const double rate = ((1 - xi) * wake->rate[newer] + xi * wake->rate[older]) * decay;
+    double line[2];
+    sheet_line(&at->flow->fish[g].wake, points, i, line);
     return (struct sensor_source){
         .at = {.x = from->x[i],
                .y = from->y[i],
@@ -144,7 +145,7 @@ static struct sensor_source sensor_wake_source(const struct sensor_targets *at, 
                .leg = from->leg[i],
                .square = from->square[i]},
         .velocity = {(1 - xi) * wake->u[newer] + xi * wake->u[older], (1 - xi) * wake->v[newer] + xi * wake->v[older]},
-        .dipole = {-rate * (wake->x[older] - wake->x[newer]), -rate * (wake->y[older] - wake->y[newer])}};
+        .dipole = {rate * line[0], rate * line[1]}};
 }
 
 // add body and wake of fish g at the control points of fish f
@@ -177,11 +178,11 @@ static void sensor_add_fish(const struct sensor_targets *at, int f, int g) {
 
     // own wake, then other wakes and all images
     for (int i = 0; g == f && i < sheet->graded.n_released; i++) {
-        const struct sensor_source source = sensor_wake_source(at, g, &sheet->graded, false, i);
+        const struct sensor_source source = sensor_wake_source(at, g, &sheet->graded, i);
         sensor_add(at, &own, &source);
     }
     for (int i = 0; i < sheet->middles.n_released; i++) {
-        const struct sensor_source source = sensor_wake_source(at, g, &sheet->middles, true, i);
+        const struct sensor_source source = sensor_wake_source(at, g, &sheet->middles, i);
         if (g != f) sensor_add(at, &wake, &source);
         sensor_add_images(at, &wake, &source);
     }

@@ -148,8 +148,9 @@ static const struct note {
     const char *name;
     size_t length;
 } notes[] = {
-    [RESULT_STATUS] = {"run_status", STATUS_LENGTH},       [RESULT_WARNINGS] = {"warnings", MAX_NOTE_LENGTH},
-    [RESULT_CLOSEST_APPROACH] = {"closest_approach", 256}, [RESULT_MERGED] = {"merged_vortices", 128},
+    [RESULT_STATUS] = {"run_status", STATUS_LENGTH},
+    [RESULT_WARNINGS] = {"warnings", MAX_NOTE_LENGTH},
+    [RESULT_CLOSEST_APPROACH] = {"closest_approach", 256},
     [RESULT_CHECKPOINT_AT] = {"checkpoint_at", 1024},
 };
 enum { N_NOTES = sizeof notes / sizeof *notes };

@@ -105,7 +105,7 @@ enum status result_file_row(struct result_file *result, const struct result_row 
 /* Set an attribute with reserved space, before closing: run_status, warnings (a line each), closest_approach ("1.2 m
  * between a and b at t = 3 s") or checkpoint_at ("0.3,1.25": times of additional checkpoints, s). At first run_status
  * is "running", the others are empty. A longer string is cut. */
-enum result_note { RESULT_STATUS, RESULT_WARNINGS, RESULT_CLOSEST_APPROACH, RESULT_MERGED, RESULT_CHECKPOINT_AT };
+enum result_note { RESULT_STATUS, RESULT_WARNINGS, RESULT_CLOSEST_APPROACH, RESULT_CHECKPOINT_AT };
 void result_file_note(struct result_file *result, enum result_note note, const char *text);
 
 /* Release the file in a fork of the process that writes it: netcdf_abandon. */

@@ -175,8 +175,7 @@ static enum status print_last_row(const struct info *info) {
 }
 
 enum status result_info(const struct netcdf_reader *reader, FILE *stream) {
-    static const char *const notes[][2] = {
-        {"closest_approach", "closest approach"}, {"merged_vortices", "merged vortices"}, {"warnings", "warning"}};
+    static const char *const notes[][2] = {{"closest_approach", "closest approach"}, {"warnings", "warning"}};
     struct info info = {.reader = reader, .stream = stream};
     char *text;
     TRY(netcdf_read_length(reader, "time", 0, SIZE_MAX, &info.n_rows));

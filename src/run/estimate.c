@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "run/simulate.h"
+#include "wake/stretch.h"
 
 /* A synthetic wake drifts away from the tail by `drift` body lengths per beat; the lateral amplitude is `width` body
  * lengths. */
@@ -22,12 +23,13 @@ static const double usual_bytes = 1900;
 /* Vortices per fish in the first synthetic wake, which doubles from wake to wake; maximum number of wakes. */
 enum { FIRST_WAKE = 64, MAX_WAKES = 24 };
 
-/* Costs of an event against the number of vortices per fish. Entry 0 is the cost with the actual wakes. Beyond the last
- * entry, the added time grows as n^2 to the number of vortices from which the tree sums, then as n log n; memory grows
- * linearly. */
+/* Costs of an event against the number of vortices per fish that were released, of which some are dropped. Entry 0 is
+ * the cost with the actual wakes. Beyond the last entry, the added time grows as n^2 to the number of vortices from
+ * which the tree sums, then as n log n; memory grows linearly. */
 struct costs {
     int n;
     double vortices[MAX_WAKES + 1], seconds[MAX_WAKES + 1], bytes[MAX_WAKES + 1], by_tree;
+    double stays; /* the part of the vortices of the last entry that was not dropped */
 };
 
 // peak memory of the program so far
@@ -98,8 +100,9 @@ static enum status measure_synthetic_wakes(struct simulation *simulation, double
     const int most = wake_most(school, simulation->n_events);
 
     // entry 0: the actual wakes
-    int n = state->wake[0].n_vortex;
+    int n = wake_most(school, state->event) < most ? wake_most(school, state->event) : most;
     costs->vortices[0] = fmax(1, n);
+    costs->stays = fmin(1, state->wake[0].n_vortex / costs->vortices[0]);
     TRY(event_cost(simulation, evaluations, &costs->seconds[0]));
     costs->bytes[0] = bytes_so_far();
 
@@ -128,8 +131,17 @@ static enum status measure_synthetic_wakes(struct simulation *simulation, double
                 wake->circulation[i] = 0.01 * fish->length * fish->length * rate * cos(phase);
                 wake->birth[i] = state->t - age;
             }
+
+            // as in a run, where markers are dropped at every event
+            wake->n_old = 0;
+            stretch_find_old(wake, fish, school);
+            for (int before = -1; before != wake->n_vortex;) {
+                before = wake->n_vortex;
+                stretch_drop(wake, fish, school);
+            }
         }
         costs->vortices[costs->n] = n;
+        costs->stays = (double)state->wake[0].n_vortex / n;
         TRY(event_cost(simulation, evaluations, &costs->seconds[costs->n]));
         costs->bytes[costs->n] = bytes_so_far();
         costs->n++;
@@ -154,7 +166,7 @@ static double event_added_cost(const struct costs *costs, double vortices) {
 enum status estimate_run(struct simulation *simulation, double patience, struct estimate *estimate) {
     const double end = clock_seconds(CLOCK_THREAD_CPUTIME_ID) + patience;
     double each, evaluations;
-    struct costs costs = {.n = 1, .vortices = {1}};
+    struct costs costs = {.n = 1, .vortices = {1}, .stays = 1};
     TRY(measure_first_events(simulation, patience / 2, estimate, &each, &evaluations));
 
     // a run that has ended has its longest wakes. A synthetic wake does not match the body: a solver failure with this
@@ -170,7 +182,7 @@ enum status estimate_run(struct simulation *simulation, double patience, struct 
     const struct school *const school = simulation->school;
     const struct kernel *const kernel = simulation->residual->flow->kernel;
     costs.by_tree = school->wake_tolerance > 0 ? fmax(kernel->tree_sources, sqrt(kernel->tree_interactions)) : INFINITY;
-    costs.by_tree /= school->n_fish;
+    costs.by_tree /= school->n_fish * costs.stays;
 
     // sum over all events: panels of many events while the wakes grow, then events with constant wakes
     enum { PANELS = 2000 };
@@ -182,7 +194,8 @@ enum status estimate_run(struct simulation *simulation, double patience, struct 
     // memory with the longest wakes: the last doubling of the wakes measures the memory per vortex
     const int last = costs.n - 1, n_fish = school->n_fish, enough = 20000;
     const double more = last > 0 ? (costs.vortices[last] - costs.vortices[last - 1]) * n_fish : 0;
-    const double bytes_each = more > enough ? (costs.bytes[last] - costs.bytes[last - 1]) / more : usual_bytes;
+    const double bytes_each =
+        more > enough ? (costs.bytes[last] - costs.bytes[last - 1]) / more : costs.stays * usual_bytes;
     estimate->bytes = bytes_so_far() + bytes_of_file + fmax(0, most - costs.vortices[last]) * n_fish * bytes_each;
 
     // the samples of a period

@@ -226,11 +226,8 @@ enum status event_next(struct state *state, struct residual *residual, struct in
 
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < school->n_fish; f++) {
-        impulse_remove(school, state, f);
-        wake_remove_old(&state->wake[f], school, state->t);
+        impulse_thin_wake(school, state, f);
     }
-
-    wake_merge(school, state);
 
     if (jumps) TRY(initial_conditions_solve(initial, &residual_run, state->t, state->y, state->yp));
     event_wake_velocities(state, residual, 1);

@@ -77,14 +77,4 @@ void record_notes_write(struct result_file *file, const struct simulation *simul
                  school->fish[closest->fish[0]].name, school->fish[closest->fish[1]].name, closest->t);
         result_file_note(file, RESULT_CLOSEST_APPROACH, text);
     }
-
-    if (school->wake_merge <= 0) return;
-    long n_merged = 0, n_vortices = 0;
-    for (int f = 0; f < school->n_fish; f++) {
-        n_merged += simulation->state->wake[f].n_merged;
-        n_vortices += simulation->state->wake[f].n_vortex;
-    }
-    snprintf(text, sizeof text, "%ld merged with a neighbour; %ld vortices in the wakes at the end", n_merged,
-             n_vortices);
-    result_file_note(file, RESULT_MERGED, text);
 }

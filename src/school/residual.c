@@ -233,7 +233,9 @@ double residual_shed_rate(const struct residual *residual, const struct residual
 double residual_lost(const struct residual *residual, int f, double t) {
     const struct school *school = residual->school;
     const struct state *state = residual->state;
-    return school->removed == REMOVED_DROPPED ? wake_lost(&state->wake[f], school, state->t, t - state->t) : 0;
+    return school->removed == REMOVED_DROPPED
+               ? impulse_lost_circulation(&state->wake[f], school, state->t, t - state->t)
+               : 0;
 }
 
 struct actuation residual_muscle(const struct residual *residual, int f) {

@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "state/state.h"
+#include "wake/stretch.h"
 
 void impulse_add(struct impulse_moments *sum, double circulation, double x, double y) {
     sum->circulation += circulation;
@@ -16,31 +17,70 @@ void impulse_add_stretch(struct impulse_moments *sum, double circulation, const 
     impulse_add(sum, circulation / 2, other[0], other[1]);
 }
 
-/* Add a wake at the time t + tau, multiplied by factor: the strengths at the fraction q of the interval, less, if
- * less_q >= 0, the strengths at that fraction. */
+/* Besides the fractions of an interval: without decay; no wake. */
+static const double undecayed = -1, none = -2;
+
+/* The circulations that stretch j gives to its markers at the time t + tau, decayed up to the fraction q. */
+static void stretch_circulations(const struct wake *wake, const struct school *school, int j,
+                                 const struct stretch_form *form, double t, double tau, double q,
+                                 double sum[STRETCH_MARKERS]) {
+    double label[STRETCH_MARKERS];
+    for (int b = 0; b < form->n; b++) {
+        const int i = form->first + b;
+        label[b] = wake_label(wake, i, school->interval, tau);
+        if (q >= 0) label[b] *= wake_part_of_label(wake, school, t, q, i);
+    }
+    for (int a = 0; a < form->n; a++) {
+        sum[a] = 0;
+        for (int b = 0; b < form->n; b++) sum[a] += form->part[a][b] * label[b];
+        if (q < 0) continue;
+        sum[a] *= j < wake->n_old ? wake_part_of_marker(wake, school, t, q, form->first + a)
+                                  : wake_part_of_stretch(wake, school, t, q, j);
+    }
+}
+
+/* Add factor times a wake at the time t + tau: the strengths at the fraction q of the interval, less the strengths at
+ * less_q. */
 static void impulse_add_wake(struct impulse_moments *sum, const struct wake *wake, const struct school *school,
                              double t, double tau, double q, double less_q, double factor) {
-    struct wake_decay now = {.wake = wake, .school = school, .t = t, .tau = tau, .q = q}, then = now;
-    then.q = less_q;
-    const int first = less_q >= 0 ? wake_first_decaying(wake, school, t) : wake->n_vortex - 1;
-    double newer[2] = {0, 0}, before = 0;
-    for (int i = first; i >= 0; i--) {
-        const double less = less_q >= 0 ? wake_next_strength(&then, i) : 0;
-        const double strength = factor * (wake_next_strength(&now, i) - less);
+    const bool is_change = less_q > none;
+    struct stretch_form form = {.n = 0};
+    for (int j = 0; j < wake_n_sources(wake); j++) {
+        // what does not decay does not change: nothing from the oldest marker of this stretch on
+        const int oldest = wake->has_markers && j > 0 ? j - 1 : j;
+        if (is_change && !(wake_strength_within(school, t - wake->birth[oldest], 1) < 1)) return;
+
         double at[2];
-        wake_marker(wake, i, school->interval, tau, at);
-        if (!wake->has_markers) impulse_add(sum, strength, at[0], at[1]);
-        if (wake->has_markers && i < first) impulse_add_stretch(sum, before - strength, at, newer);
-        before = strength;
-        newer[0] = at[0];
-        newer[1] = at[1];
+        if (!wake->has_markers) {
+            const double part = q >= 0 ? wake_part_of_label(wake, school, t, q, j) : 1;
+            const double less = less_q >= 0 ? wake_part_of_label(wake, school, t, less_q, j) : 0;
+            wake_marker(wake, j, school->interval, tau, at);
+            impulse_add(sum, factor * (part - less) * wake->circulation[j], at[0], at[1]);
+            continue;
+        }
+
+        double strength[STRETCH_MARKERS], less[STRETCH_MARKERS] = {0};
+        stretch_set_form(&form, wake, school, j);
+        stretch_circulations(wake, school, j, &form, t, tau, q, strength);
+        if (is_change) stretch_circulations(wake, school, j, &form, t, tau, less_q, less);
+        for (int a = 0; a < form.n; a++) {
+            wake_marker(wake, form.first + a, school->interval, tau, at);
+            impulse_add(sum, factor * (strength[a] - less[a]), at[0], at[1]);
+        }
     }
 }
 
 struct impulse_moments impulse_of_wake(const struct wake *wake, const struct school *school, double t, double tau) {
     struct impulse_moments sum = {0};
-    impulse_add_wake(&sum, wake, school, t, tau, tau / school->interval, -1, 1);
+    impulse_add_wake(&sum, wake, school, t, tau, tau / school->interval, none, 1);
     return sum;
+}
+
+double impulse_lost_circulation(const struct wake *wake, const struct school *school, double t, double tau) {
+    struct impulse_moments lost = {0};
+    const double q = tau / school->interval;
+    impulse_add_wake(&lost, wake, school, t, tau, undecayed, q, 1);
+    return wake->removed + lost.circulation;
 }
 
 void impulse_of(const struct impulse_moments *sum, double factor, double impulse[3]) {
@@ -91,19 +131,20 @@ void impulse_fade(const struct school *school, struct state *state, int f) {
     book_loss(school, state, f, &lost, (const double[]){(start[0] + end[0]) / 2, (start[1] + end[1]) / 2});
 }
 
-void impulse_remove(const struct school *school, struct state *state, int f) {
-    const struct wake *const wake = &state->wake[f];
+void impulse_thin_wake(const struct school *school, struct state *state, int f) {
+    struct wake *const wake = &state->wake[f];
     const struct fish *const fish = &school->fish[f];
+    const double t = state->t;
 
-    // labels of old rings have decayed completely
-    const int n_old = wake_n_old(wake, school, state->t);
-    struct impulse_moments lost = {0};
-    for (int i = 0; i < n_old && !school->finite; i++) {
-        const int newer = i + wake->has_markers;
-        const double g = wake_strength(school, state->t - wake->birth[newer]) * wake_source(wake, i);
-        impulse_add_stretch(&lost, g, (const double[]){wake->x[i], wake->y[i]},
-                            (const double[]){wake->x[newer], wake->y[newer]});
-    }
+    const struct impulse_moments before = impulse_of_wake(wake, school, t, 0);
+    wake_remove_old(wake, school, t);
+    stretch_find_old(wake, fish, school);
+    stretch_drop(wake, fish, school);
+    const struct impulse_moments after = impulse_of_wake(wake, school, t, 0);
+    const struct impulse_moments lost = {.circulation = before.circulation - after.circulation,
+                                         .x = before.x - after.x,
+                                         .y = before.y - after.y,
+                                         .square = before.square - after.square};
 
     const double tail[2] = {state->y[fish->at.x + fish->n_nodes - 1], state->y[fish->at.y + fish->n_nodes - 1]};
     book_loss(school, state, f, &lost, tail);

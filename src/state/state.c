@@ -166,7 +166,7 @@ const struct state_row state_table[] = {
     {"wake.has_markers", OF_WAKE(STATE_INTEGER, has_markers), STATE_NO_ARRAY},
     {"wake.tail_velocity", OF_WAKE(STATE_REAL, tail_velocity), STATE_NO_ARRAY},
     {"wake.tail_tangent", OF_WAKE(STATE_REAL, tail_tangent), STATE_NO_ARRAY},
-    {"wake.n_merged", OF_WAKE(STATE_INTEGER, n_merged), STATE_NO_ARRAY},
+    {"wake.n_old", OF_WAKE(STATE_INTEGER, n_old), STATE_NO_ARRAY},
     {"wake.n_added", OF_WAKE(STATE_INTEGER, n_added), STATE_NO_ARRAY},
     {"wake.removed", OF_WAKE(STATE_REAL, removed), STATE_NO_ARRAY},
     {"wake.shed_before", OF_WAKE(STATE_REAL, shed_before), STATE_NO_ARRAY},
@@ -363,7 +363,9 @@ enum status state_table_check(const struct state *state, const struct school *sc
         is_good = is_good && balance->n >= 0 && balance->n <= 2 && control->waypoint >= 0 &&
                   control->waypoint <= n_waypoints && control->n_waypoints >= 0 &&
                   control->n_waypoints <= CONTROL_MAX_WAYPOINTS;
-        is_good = is_good && state->wake[f].has_markers == (school->shedding == SHEDDING_SHEET);
+        const struct wake *const wake = &state->wake[f];
+        is_good = is_good && wake->has_markers == (school->shedding == SHEDDING_SHEET) && wake->n_old >= 0 &&
+                  wake->n_old <= wake_n_sources(wake) && (wake->n_old == 0 || wake->has_markers);
     }
 
     return is_good ? STATUS_OK : status_fail(STATUS_FILE, "the state does not fit this case");

@@ -184,32 +184,8 @@ void state_table_copy(struct state *to, const struct state *from, const struct s
  * the time of the event, or if a value that is always defined is not finite. */
 enum status state_table_check(const struct state *state, const struct school *school);
 
-// ---- wake_merge.c: merge neighbours in an old wake within a bound on the velocity change at the bodies: `wake.merge`.
-// doc/numerics.md, section 13. Tested by tests/state/test_wake_merge.c.
-//
-//     vortices            a     b          ->        a + b        at their centroid
-//
-//     markers     i-1 --- i --- i+1 --- i+2  ->   i-1 --- p --- i+2   half of the middle stretch to each side
-//
-// Merging conserves the circulation of a wake and the first moment, the impulse, to rounding. The leading error is the
-// change of the second moments: with d the distance of each vortex (or middle of a stretch), before and after, from
-// the merged vortex, the velocity at a point at the distance r changes by
-//
-//     |du| <= sqrt(2)/(2 pi) sum |Gamma| d^2 / (r - d_max)^3.
-//
-// A pair is merged if this bound, at every body, is at most wake.merge lengths per beat of the body, divided by the
-// largest number of vortices of one fish: all merging in one wake changes the velocity at a body by at most wake.merge
-// lengths per beat. r is the smallest distance from a circle around the body, over the remaining lifetime of the newer
-// vortex, for constant velocities of bodies and vortices. No pair is merged within two lengths of a body.
-
-/* Every wake is searched for pairs once in WAKE_MERGE_EVENTS events, the wakes in turn. */
-enum { WAKE_MERGE_EVENTS = 8 };
-
-/* Merge pairs in the wakes of this turn, at the event of the state: after the removal of old vortices, before the
- * evaluation of new velocities. No-op without wake.merge. */
-void wake_merge(const struct school *school, struct state *state);
-
-// ---- impulse.c: impulse of vortices, and impulse lost by wakes in decay, removal and merging of vortices.
+// ---- impulse.c: impulse of vortices, and impulse lost by wakes in decay, and by the
+// removal of vortices and markers.
 // doc/model.md, section 13. Tested by tests/state/test_impulse.c.
 //
 // In the plane a vortex of circulation G at x has the impulse -rho w E3 x G and the angular impulse -rho w |x|^2 G/2
@@ -236,12 +212,15 @@ void impulse_of(const struct impulse_moments *sum, double factor, double impulse
 /* The depth of a fish, m; NaN if the depth varies along the body. */
 double impulse_depth(const struct fish *fish);
 
+/* Lost circulation of a wake, tau after the event at time t: removed vortices, and decayed circulation. */
+double impulse_lost_circulation(const struct wake *wake, const struct school *school, double t, double tau);
+
 /* impulse_fade: book the moments that decay in the wake of fish f between the event of the state and the next event;
- * call before the wake moves. impulse_remove: book the remaining moments of the old vortices; call before the removal
- * at the event of the state. With wake.removed_circulation: dropped, the lost circulation returns to the body, and is
- * booked at the tail. */
+ * call before the wake moves. impulse_thin_wake: remove old vortices, and drop markers, at the event of the state after
+ * the release, and book what changes. With wake.removed_circulation: dropped, the lost circulation returns to the body,
+ * and is booked at the tail. */
 void impulse_fade(const struct school *school, struct state *state, int f);
-void impulse_remove(const struct school *school, struct state *state, int f);
+void impulse_thin_wake(const struct school *school, struct state *state, int f);
 
 /* Book the loss of a wake that has changed at an event: before minus after. */
 void impulse_book(struct momentum_balance *momentum, const struct impulse_moments *before,

@@ -12,6 +12,7 @@
 #include "result/result_reader.h"
 #include "result/result_table.h"
 #include "view/field_file.h"
+#include "wake/stretch.h"
 
 /* A result file that is being read. */
 struct reading {
@@ -144,6 +145,13 @@ static enum status read_wake(const struct reading *reading, long row, int f, con
     to->state->y[to->school->fish[f].at.circulation] = wake->shed_before = shed;
     const double oldest = wake->has_markers && n > 0 ? shed - wake->circulation[n - 1] : 0;
     for (int i = 0; i < n; i++) wake->circulation[i] += oldest;
+
+    // old is what is far from the tail, or where markers were dropped
+    const double longest = 1.5 * to->school->interval;
+    stretch_find_old(wake, &to->school->fish[f], to->school);
+    for (int j = wake->n_old; wake->has_markers && j + 1 < n; j++) {
+        if (wake->birth[j + 1] - wake->birth[j] > longest) wake->n_old = j + 1;
+    }
     wake->version++;
     return STATUS_OK;
 }

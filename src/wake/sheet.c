@@ -52,10 +52,11 @@ static double sheet_leg(double depth, double distance) {
 
 static void points_reserve(struct arena *arena, struct sheet_points *points, int n) {
     if (n <= points->capacity) return;
-    double **const all[] = {&points->xi,           &points->part,   &points->smoothing[0],
-                            &points->smoothing[1], &points->leg[0], &points->leg[1]};
+    double **const all[] = {&points->xi,     &points->part,   &points->smoothing[0], &points->smoothing[1],
+                            &points->leg[0], &points->leg[1], &points->remains[0],   &points->remains[1]};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) GROW(arena, *all[i], n);
-    GROW(arena, points->stretch, n);
+    GROW(arena, points->newer, n);
+    GROW(arena, points->older, n);
     points->sources.arena = arena;
     points->sources.n = 0;
     sources_append(&points->sources, n);
@@ -66,43 +67,52 @@ void sheet_reserve(struct arena *arena, struct sheet *sheet, int n) {
     if (sheet->arena && n <= sheet->capacity) return;
     sheet->arena = arena;
     sheet->capacity = n + n / 2;
-    double **const all[] = {&sheet->x[0],  &sheet->x[1],      &sheet->y[0],     &sheet->y[1],
-                            &sheet->label, &sheet->length[0], &sheet->length[1]};
+    double **const padded[] = {&sheet->x[0], &sheet->x[1], &sheet->y[0], &sheet->y[1], &sheet->label};
+    double **const all[] = {&sheet->remains[0], &sheet->remains[1], &sheet->distance[0], &sheet->distance[1]};
+    for (size_t i = 0; i < sizeof padded / sizeof *padded; i++) {
+        GROW(arena, *padded[i], sheet->capacity + 2 * SHEET_PAD);
+    }
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) GROW(arena, *all[i], sheet->capacity);
-    points_reserve(arena, &sheet->graded, sheet->capacity + 2 * SHEET_PAIRED + 4 * SHEET_PANEL);
-    points_reserve(arena, &sheet->middles, sheet->capacity + 2 * SHEET_PAIRED + 4 * SHEET_PANEL);
+    for (int k = 0; k < SHEET_DIAGONALS; k++) GROW(arena, sheet->diagonal[k], sheet->capacity);
+    const int most = sheet->capacity + STRETCH_MARKERS + 2 * SHEET_PAIRED + 4 * SHEET_PANEL;
+    points_reserve(arena, &sheet->graded, most);
+    points_reserve(arena, &sheet->middles, most);
 }
 
-// lengths of the stretches; returns the length of the sheet from the tail to the oldest marker
-static double stretch_lengths(const struct wake *wake, double tau, const double *x, const double *y,
-                              double *restrict length) {
+// distances of the markers from the tail along the sheet
+static void set_distances(const struct wake *wake, double tau, const double *x, const double *y,
+                          double *restrict distance) {
     const int newest = wake->n_vortex - 1;
-    if (newest < 0) return 0;
-    for (int i = 0; i < newest; i++) {
-        const double along[2] = {x[i + 1] - x[i], y[i + 1] - y[i]};
-        length[i] = sqrt(along[0] * along[0] + along[1] * along[1]);
-    }
+    if (newest < 0) return;
 
     // the tail keeps its velocity
-    const double to_tail[2] = {wake->x[newest] + tau * wake->tail_velocity[0] - x[newest],
-                               wake->y[newest] + tau * wake->tail_velocity[1] - y[newest]};
-    double sum = sqrt(to_tail[0] * to_tail[0] + to_tail[1] * to_tail[1]);
-    for (int i = newest - 1; i >= 0; i--) sum += length[i];
-    return sum;
+    double before[2] = {wake->x[newest] + tau * wake->tail_velocity[0], wake->y[newest] + tau * wake->tail_velocity[1]};
+    double sum = 0;
+    for (int i = newest; i >= 0; i--) {
+        const double along[2] = {before[0] - x[i], before[1] - y[i]};
+        sum += sqrt(along[0] * along[0] + along[1] * along[1]);
+        distance[i] = sum;
+        before[0] = x[i];
+        before[1] = y[i];
+    }
 }
 
-static void points_add(const struct sheet *from, struct sheet_points *points, bool is_graded, const struct fish *fish,
-                       const struct wake *wake, double interval, int stretch, const double distance[2], double xi,
+// add a point between two markers
+static void points_add(const struct sheet *sheet, struct sheet_points *points, const struct fish *fish,
+                       const struct school *school, const struct wake *wake, double t, int newer, int older, double xi,
                        double part) {
     const int i = points->n_released++, newest = wake->n_vortex - 1;
-    points->stretch[i] = stretch;
+    points->newer[i] = newer;
+    points->older[i] = older;
     points->xi[i] = xi;
     points->part[i] = part;
 
     for (int end = 0; end < 2; end++) {
-        const double tau = end * interval, *const x = from->x[end] + stretch, *const y = from->y[end] + stretch;
-        const double from_tail[2] = {(1 - xi) * x[1] + xi * x[0] - wake->x[newest] - tau * wake->tail_velocity[0],
-                                     (1 - xi) * y[1] + xi * y[0] - wake->y[newest] - tau * wake->tail_velocity[1]};
+        const double tau = end * school->interval;
+        const double *const x = sheet->x[end] + SHEET_PAD, *const y = sheet->y[end] + SHEET_PAD;
+        const double from_tail[2] = {
+            (1 - xi) * x[newer] + xi * x[older] - wake->x[newest] - tau * wake->tail_velocity[0],
+            (1 - xi) * y[newer] + xi * y[older] - wake->y[newest] - tau * wake->tail_velocity[1]};
 
         // beyond this square of the distance the taper differs from 1 by exp(-ratio^2) = 3e-14, for any tangent
         const double taper = fmax(fish->taper, fish->taper_beside), far = 5.5677643628300219 * taper * taper;
@@ -110,49 +120,90 @@ static void points_add(const struct sheet *from, struct sheet_points *points, bo
 
         // middles are sources for other targets, with the full smoothing of the pair
         points->smoothing[end][i] = 0;
-        if (is_graded) {
+        if (points == &sheet->graded) {
             points->smoothing[end][i] = is_far ? fish->smoothing : sheet_taper(fish, from_tail, wake->tail_tangent);
         }
-        points->leg[end][i] = sheet_leg(fish->strip_depth, distance[end] + xi * from->length[end][stretch]);
+        const double *const distance = sheet->distance[end];
+        points->leg[end][i] = sheet_leg(fish->strip_depth, (1 - xi) * distance[newer] + xi * distance[older]);
+        points->remains[end][i] = newer == older ? wake_part_of_marker(wake, school, t, end, newer)
+                                                 : wake_part_of_stretch(wake, school, t, end, older);
     }
 }
 
-void sheet_build(struct sheet *sheet, const struct fish *fish, const struct school *school, const struct wake *wake) {
+// select the old markers, with the matrix of their forms, as the points of both views
+static void build_old(struct sheet *sheet, const struct fish *fish, const struct school *school,
+                      const struct wake *wake, double t) {
+    const int n = wake->n_vortex;
+    // a cubic form ends one marker beyond the stretch, of the oldest stretch two
+    const int most = wake->n_old == 1 ? STRETCH_MARKERS : wake->n_old + 2;
+    sheet->n_markers = wake->n_old == 0 ? 0 : most < n ? most : n;
+    for (int k = 0; k < SHEET_DIAGONALS; k++) {
+        memset(sheet->diagonal[k], 0, (size_t)sheet->n_markers * sizeof(double));
+    }
+    struct stretch_form form = {.n = 0};
+    for (int j = 0; j < wake->n_old; j++) {
+        stretch_set_form(&form, wake, school, j);
+        for (int a = 0; a < form.n; a++) {
+            for (int b = 0; b < form.n; b++) sheet->diagonal[b - a + SHEET_PAD][form.first + a] += form.part[a][b];
+        }
+    }
+    for (int i = 0; i < sheet->n_markers; i++) {
+        points_add(sheet, &sheet->graded, fish, school, wake, t, i, i, 0, 1);
+        sheet->middles.n_released++;
+    }
+}
+
+void sheet_build(struct sheet *sheet, const struct fish *fish, const struct school *school, const struct wake *wake,
+                 double t) {
     const bool is_sheet = school->shedding == SHEDDING_SHEET;
-    const int n_stretches = is_sheet && wake->n_vortex > 0 ? wake->n_vortex - 1 : 0;
+    const int n = wake->n_vortex, n_stretches = is_sheet && n > 0 ? n - 1 : 0;
     struct sheet_points *const graded = &sheet->graded, *const middles = &sheet->middles;
-    graded->n_released = 0;
-    middles->n_released = is_sheet ? 0 : wake->n_vortex;
+    graded->n_released = middles->n_released = sheet->n_markers = sheet->n_single = 0;
     graded->n_nascent = is_sheet ? SHEET_PANEL : 0;
     middles->n_nascent = 1;
+    for (int i = 0; i < n && !is_sheet; i++) middles->newer[middles->n_released++] = i;
 
-    // markers and stretches at both ends of the interval; distances from the tail along the sheet
-    double distance[2] = {0, 0};
-    for (int end = 0; end < 2 && is_sheet; end++) {
-        const double tau = end * school->interval;
-        wake_places(wake, school->interval, tau, sheet->x[end], sheet->y[end]);
-        distance[end] = stretch_lengths(wake, tau, sheet->x[end], sheet->y[end], sheet->length[end]);
+    if (is_sheet) {
+        double *const padded[] = {sheet->x[0], sheet->y[0], sheet->label};
+        for (size_t i = 0; i < sizeof padded / sizeof *padded; i++) {
+            memset(padded[i], 0, SHEET_PAD * sizeof(double));
+            memset(padded[i] + SHEET_PAD + n, 0, SHEET_PAD * sizeof(double));
+        }
+        for (int end = 0; end < 2; end++) {
+            const double tau = end * school->interval;
+            double *const x = sheet->x[end] + SHEET_PAD, *const y = sheet->y[end] + SHEET_PAD;
+            wake_places(wake, school->interval, tau, x, y);
+            set_distances(wake, tau, x, y, sheet->distance[end]);
+            for (int i = 0; i < n; i++) sheet->remains[end][i] = wake_part_of_label(wake, school, t, end, i);
+        }
+        build_old(sheet, fish, school, wake, t);
     }
 
     // more points for newer stretches
-    sheet->n_single = n_stretches > SHEET_PAIRED ? n_stretches - SHEET_PAIRED : 0;
-    for (int i = 0; i < n_stretches; i++) {
+    const int n_young = n_stretches - wake->n_old;
+    sheet->n_single = n_young > SHEET_PAIRED ? n_young - SHEET_PAIRED : 0;
+    for (int i = wake->n_old; i < n_stretches; i++) {
         const int age = n_stretches - i;
-        const int n = age <= SHEET_GRADED ? SHEET_PANEL : age <= SHEET_PAIRED ? 2 : 1;
-        for (int end = 0; end < 2; end++) distance[end] -= sheet->length[end][i];
-
-        for (int k = 0; k < n; k++) {
-            const double xi = n == 1 ? 0.5 : n == 2 ? pair_xi[k] : panel_xi[k];
-            const double part = n <= 2 ? 1.0 / n : panel_part[k];
-            points_add(sheet, graded, true, fish, wake, school->interval, i, distance, xi, part);
+        const int n_points = age <= SHEET_GRADED ? SHEET_PANEL : age <= SHEET_PAIRED ? 2 : 1;
+        for (int k = 0; k < n_points; k++) {
+            const double xi = n_points == 1 ? 0.5 : n_points == 2 ? pair_xi[k] : panel_xi[k];
+            const double part = n_points <= 2 ? 1.0 / n_points : panel_part[k];
+            points_add(sheet, graded, fish, school, wake, t, i + 1, i, xi, part);
         }
 
-        // the middles of old stretches are the points of both views: sheet_place copies the points
-        if (i < sheet->n_single) {
+        // single middles are the points of both views: sheet_place copies the points
+        if (n_points == 1) {
             middles->n_released++;
         } else {
-            points_add(sheet, middles, false, fish, wake, school->interval, i, distance, 0.5, 1);
+            points_add(sheet, middles, fish, school, wake, t, i + 1, i, 0.5, 1);
         }
+    }
+    const int n_shared = sheet->n_markers + sheet->n_single;
+    if (n_shared > 0) {
+        memcpy(middles->newer, graded->newer, (size_t)n_shared * sizeof *middles->newer);
+        memcpy(middles->older, graded->older, (size_t)n_shared * sizeof *middles->older);
+        memcpy(middles->xi, graded->xi, (size_t)n_shared * sizeof *middles->xi);
+        memcpy(middles->part, graded->part, (size_t)n_shared * sizeof *middles->part);
     }
 
     // the nascent stretch or vortex
@@ -184,40 +235,62 @@ static void point_set(const struct sheet_points *points, int i, const double new
     sources->dy[i] = along * (older_end[1] - newer_end[1]);
 }
 
-// set the points of the stretches from point first on
-static void points_place(const struct sheet *sheet, const struct sheet_points *points, int first, double q) {
-    const double *const x = sheet->x[0], *const y = sheet->y[0], *const label = sheet->label;
+// set the points of young stretches from point first on
+static void points_place(const struct sheet *sheet, const struct sheet_points *points, int first) {
+    const double *const x = sheet->x[0] + SHEET_PAD, *const y = sheet->y[0] + SHEET_PAD;
+    const double *const label = sheet->label + SHEET_PAD;
     for (int i = first; i < points->n_released; i++) {
-        const int k = points->stretch[i];
-        const double newer[2] = {x[k + 1], y[k + 1]}, older[2] = {x[k], y[k]};
-        point_set(points, i, newer, older, label[k + 1], label[k]);
+        const int newer = points->newer[i], older = points->older[i];
+        point_set(points, i, (const double[]){x[newer], y[newer]}, (const double[]){x[older], y[older]}, label[newer],
+                  label[older]);
     }
+}
 
+// set the values that are linear in time, from point first on, and reduce the circulations
+static void points_fade(const struct sheet_points *points, int first, double q) {
     const struct sources *const sources = &points->sources;
     for (int i = first; i < points->n_released; i++) {
         const double smoothing = (1 - q) * points->smoothing[0][i] + q * points->smoothing[1][i];
         sources->square[i] = smoothing * smoothing;
         sources->leg[i] = (1 - q) * points->leg[0][i] + q * points->leg[1][i];
+        sources->q[i] *= points->remains[0][i] + q * (points->remains[1][i] - points->remains[0][i]);
     }
 }
 
-void sheet_place(struct sheet *sheet, const struct school *school, const struct wake *wake, double t, double tau) {
-    const double q = tau / school->interval;
-    const struct sheet_points *const graded = &sheet->graded;
-    const struct sources *const from = &graded->sources, *const to = &sheet->middles.sources;
-    if (school->shedding != SHEDDING_SHEET) {
-        wake_places(wake, school->interval, tau, to->x, to->y);
-        wake_strengths(wake, school, t, tau, q, to->q);
-        return;
-    }
-
-    wake_places(wake, school->interval, tau, sheet->x[0], sheet->y[0]);
-    wake_strengths(wake, school, t, tau, q, sheet->label);
-
-    // the middles of the oldest stretches
+// set the markers of old stretches: the matrix of the forms times labels and places
+static void place_old(const struct sheet *sheet) {
+    const struct sources *const to = &sheet->graded.sources;
     const double *const x = sheet->x[0], *const y = sheet->y[0], *const label = sheet->label;
-    double *restrict const to_x = from->x, *restrict const to_y = from->y, *restrict const strength = from->q;
-    double *restrict const dx = from->dx, *restrict const dy = from->dy;
+    double *restrict const strength = to->q, *restrict const dx = to->dx, *restrict const dy = to->dy;
+    const size_t size = (size_t)sheet->n_markers * sizeof(double);
+    memcpy(to->x, x + SHEET_PAD, size);
+    memcpy(to->y, y + SHEET_PAD, size);
+    memset(strength, 0, size);
+    memset(dx, 0, size);
+    memset(dy, 0, size);
+    for (int k = 0; k < SHEET_DIAGONALS; k++) {
+        const double *const part = sheet->diagonal[k];
+        for (int i = 0; i < sheet->n_markers; i++) {
+            strength[i] += part[i] * label[i + k];
+            dx[i] += part[i] * x[i + k];
+            dy[i] += part[i] * y[i + k];
+        }
+    }
+    for (int i = 0; i < sheet->n_markers; i++) {
+        dx[i] *= label[i + SHEET_PAD];
+        dy[i] *= label[i + SHEET_PAD];
+    }
+}
+
+// set the middles of young stretches with one point
+static void place_single(const struct sheet *sheet, const struct wake *wake) {
+    const struct sources *const to = &sheet->graded.sources;
+    const int stretch = SHEET_PAD + wake->n_old, point = sheet->n_markers;
+    const double *const x = sheet->x[0] + stretch, *const y = sheet->y[0] + stretch;
+    const double *const label = sheet->label + stretch;
+    double *restrict const to_x = to->x + point, *restrict const to_y = to->y + point;
+    double *restrict const strength = to->q + point;
+    double *restrict const dx = to->dx + point, *restrict const dy = to->dy + point;
     for (int i = 0; i < sheet->n_single; i++) {
         const double along = -(label[i + 1] + 0.5 * (label[i] - label[i + 1]));
         to_x[i] = 0.5 * x[i + 1] + 0.5 * x[i];
@@ -226,21 +299,54 @@ void sheet_place(struct sheet *sheet, const struct school *school, const struct 
         dx[i] = along * (x[i] - x[i + 1]);
         dy[i] = along * (y[i] - y[i + 1]);
     }
-    for (int i = 0; i < sheet->n_single; i++) {
-        const double smoothing = (1 - q) * graded->smoothing[0][i] + q * graded->smoothing[1][i];
-        from->square[i] = smoothing * smoothing;
-        from->leg[i] = (1 - q) * graded->leg[0][i] + q * graded->leg[1][i];
+}
+
+void sheet_place(struct sheet *sheet, const struct school *school, const struct wake *wake, double t, double tau) {
+    const double q = tau / school->interval;
+    const struct sheet_points *const graded = &sheet->graded, *const middles = &sheet->middles;
+    const struct sources *const from = &graded->sources, *const to = &middles->sources;
+    if (school->shedding != SHEDDING_SHEET) {
+        wake_places(wake, school->interval, tau, to->x, to->y);
+        wake_strengths(wake, school, t, tau, to->q);
+        return;
     }
+
+    double *const label = sheet->label + SHEET_PAD;
+    wake_places(wake, school->interval, tau, sheet->x[0] + SHEET_PAD, sheet->y[0] + SHEET_PAD);
+    wake_labels(wake, school->interval, tau, label);
+    for (int i = 0; i < wake->n_vortex; i++) {
+        label[i] *= sheet->remains[0][i] + q * (sheet->remains[1][i] - sheet->remains[0][i]);
+    }
+
+    const int n_shared = sheet->n_markers + sheet->n_single;
+    place_old(sheet);
+    place_single(sheet, wake);
+    points_place(sheet, graded, n_shared);
+    points_place(sheet, middles, n_shared);
+    points_fade(graded, 0, q);
+    points_fade(middles, n_shared, q);
 
     // the other view
     double *const copies[][2] = {{from->x, to->x},   {from->y, to->y},   {from->q, to->q},
                                  {from->dx, to->dx}, {from->dy, to->dy}, {from->leg, to->leg}};
     for (size_t i = 0; i < sizeof copies / sizeof *copies; i++) {
-        memcpy(copies[i][1], copies[i][0], (size_t)sheet->n_single * sizeof(double));
+        memcpy(copies[i][1], copies[i][0], (size_t)n_shared * sizeof(double));
     }
+}
 
-    points_place(sheet, graded, sheet->n_single, q);
-    points_place(sheet, &sheet->middles, sheet->n_single, q);
+void sheet_line(const struct sheet *sheet, const struct sheet_points *points, int i, double line[2]) {
+    const double *const x = sheet->x[0] + SHEET_PAD, *const y = sheet->y[0] + SHEET_PAD;
+    line[0] = line[1] = 0;
+    if (i >= sheet->n_markers) {
+        const int newer = points->newer[i], older = points->older[i];
+        line[0] = points->part[i] * (x[newer] - x[older]);
+        line[1] = points->part[i] * (y[newer] - y[older]);
+        return;
+    }
+    for (int k = 0; k < SHEET_DIAGONALS; k++) {
+        line[0] += sheet->diagonal[k][i] * sheet->x[0][i + k];
+        line[1] += sheet->diagonal[k][i] * sheet->y[0][i + k];
+    }
 }
 
 double sheet_place_nascent(struct sheet_points *points, const struct school *school, const struct wake *wake, double t,
@@ -255,8 +361,7 @@ double sheet_place_nascent(struct sheet_points *points, const struct school *sch
         return shed - wake->shed_before;
     }
 
-    struct wake_decay decay = {.wake = wake, .school = school, .t = t, .tau = tau, .q = tau / school->interval};
-    const double older = newest >= 0 ? wake_next_strength(&decay, newest) : wake->shed_before;
+    const double older = newest >= 0 ? wake_strength_of(wake, school, t, tau, newest) : wake->shed_before;
     struct nascent_end *const end = &points->end;
     *end = (struct nascent_end){.is_overtaken = 0};
     sheet_newest(wake, school->interval, tau, tail, end->x);
@@ -317,32 +422,48 @@ void sheet_place_steady(struct sheet *sheet, struct sheet_points *points, const 
     }
 }
 
-void sheet_markers(struct sources *sources, const struct fish *fish, const struct school *school,
-                   const struct wake *wake, double t, double nascent) {
+void sheet_markers(struct sources *sources, const struct sheet *sheet, const struct fish *fish,
+                   const struct school *school, const struct wake *wake, double t, double nascent) {
     const int n = wake->n_vortex, first = sources->n;
     sources_append(sources, n);
-    const struct sources *const to = sources;
     if (n == 0) return;
-    memcpy(to->x + first, wake->x, (size_t)n * sizeof *to->x);
-    memcpy(to->y + first, wake->y, (size_t)n * sizeof *to->y);
-
-    // labels in the place of s, and lengths of the stretches in the place of b^2/2
-    double *const label = to->leg + first, *const length = to->half + first, before = 0;
-    wake_strengths(wake, school, t, 0, 0, label);
-    double distance = stretch_lengths(wake, 0, wake->x, wake->y, length);
+    const double *const label = sheet->label + SHEET_PAD;
+    const struct sources *const old = &sheet->middles.sources;
+    double *const q = sources->q + first, *const dx = sources->dx + first, *const dy = sources->dy + first;
+    memcpy(sources->x + first, wake->x, (size_t)n * sizeof *wake->x);
+    memcpy(sources->y + first, wake->y, (size_t)n * sizeof *wake->y);
     for (int i = 0; i < n; i++) {
-        const double here = label[i], next = i + 1 < n ? length[i] : 0, stretch = i > 0 ? here - before : 0;
-        const int newer = i + 1 < n ? i + 1 : i, older = i > 0 ? i - 1 : 0;
-        to->dx[first + i] = -here * (wake->x[older] - wake->x[newer]) / 2;
-        to->dy[first + i] = -here * (wake->y[older] - wake->y[newer]) / 2;
-        to->half[first + i] = fish->strip_depth * fish->strip_depth / 32;
-        to->leg[first + i] = sheet_leg(fish->strip_depth, distance);
-        distance -= next;
-        before = here;
-        to->q[first + i] += stretch / 2;
-        if (i > 0) to->q[first + i - 1] += stretch / 2;
+        sources->half[first + i] = fish->strip_depth * fish->strip_depth / 32;
+        sources->leg[first + i] = sheet_leg(fish->strip_depth, sheet->distance[0][i]);
+    }
+
+    // the parts of old stretches, then half of every young stretch at both ends
+    const size_t size = (size_t)sheet->n_markers * sizeof(double);
+    memcpy(q, old->q, size);
+    memcpy(dx, old->dx, size);
+    memcpy(dy, old->dy, size);
+    for (int j = wake->n_old; j + 1 < n; j++) {
+        const double along[2] = {wake->x[j + 1] - wake->x[j], wake->y[j + 1] - wake->y[j]};
+        const double half = wake_part_of_stretch(wake, school, t, 0, j) * (label[j + 1] - label[j]) / 2;
+        for (int i = j; i <= j + 1; i++) {
+            q[i] += half;
+            dx[i] += label[i] * along[0] / 2;
+            dy[i] += label[i] * along[1] / 2;
+        }
     }
 
     // the nascent stretch has length 0 at the event: both halves act at the newest marker
-    to->q[first + n - 1] += nascent;
+    q[n - 1] += nascent;
+}
+
+double sheet_change(const struct sheet *sheet, const struct wake *wake, int i, const double *value) {
+    const int n = wake->n_vortex;
+    double sum = 0;
+    for (int k = 0; k < SHEET_DIAGONALS && i < sheet->n_markers; k++) {
+        const int b = i + k - SHEET_PAD;
+        if (b >= 0 && b < n) sum += sheet->diagonal[k][i] * value[b];
+    }
+    if (i > wake->n_old) sum += (value[i] - value[i - 1]) / 2;
+    if (i >= wake->n_old && i + 1 < n) sum += (value[i + 1] - value[i]) / 2;
+    return sum;
 }

@@ -9,10 +9,11 @@
  *     marker 0 ---- 1 ---- ... ---- n-1 ---- n - - - - tail )=== body
  *      oldest                          stretch 1  nascent
  *
- * The sheet has three views:
+ * Old stretches (stretch.h) act from the markers around them in all views. Of young stretches the sheet has three
+ * views:
  *
  *   graded     for control points of the same fish: points of the newest stretches, graded towards the tail, and the
- *              middles of older stretches, with a smoothing that tapers to 0 at the tail
+ *              middles of older ones, with a smoothing that tapers to 0 at the tail
  *   middles    for all other points of bodies: the middle of every stretch; or the queue and the nascent vortex
  *   markers    for markers: the markers, each with half of both adjacent stretches */
 #ifndef SHEET_H
@@ -21,6 +22,7 @@
 #include "base/status.h"
 #include "fish/fish.h"
 #include "wake/sources.h"
+#include "wake/stretch.h"
 #include "wake/wake.h"
 
 /* Points of the nascent stretch for control points of the same fish: fraction xi of the way from the tail to the newest
@@ -29,7 +31,7 @@
 enum { SHEET_PANEL = 4 };
 
 /* Number of newest stretches with SHEET_PANEL points; age in stretches up to which a stretch has two points, each with
- * half of the circulation. Older stretches have one point, the middle. */
+ * half of the circulation. Older young stretches have one point, the middle. */
 enum { SHEET_GRADED = 1, SHEET_PAIRED = 4 };
 
 /* The older end of the nascent stretch for control points of the same fish: the newest marker, or, if the tail has
@@ -41,35 +43,42 @@ struct nascent_end {
     double tangent[2], normal[2], by_turn[2];
 };
 
-/* Points of all stretches, oldest stretch first, then the points of the nascent stretch. */
+/* Old markers and points of young stretches, oldest first, then the points of the nascent stretch. */
 struct sheet_points {
     int n_released, n_nascent, capacity;
     /* fixed for an interval: source i lies at the fraction xi of the way from the newer to the older end of its stretch
      * (nascent point vortex: 0), with the fraction `part` of the circulation (legs of a steady wake: length of the
      * legs of the point, m)                                                             (n_released + n_nascent) */
     double *xi, *part;
-    int *stretch;                  /*                                                              (n_released) */
-    double *smoothing[2], *leg[2]; /* delta(d) and s at the start and at the end of the interval, m, m2 (n_released) */
-    struct sources sources;        /* at one time */
-    struct nascent_end end;        /* of the nascent stretch */
-    double way[2];                 /* from the tail to this end, m */
+    int *newer, *older; /* the markers at both ends of the stretch; an old marker twice            (n_released) */
+    /* delta(d), m, s, m2, and the remaining part at the start and at the end of the interval      (n_released) */
+    double *smoothing[2], *leg[2], *remains[2];
+    struct sources sources; /* at one time */
+    struct nascent_end end; /* of the nascent stretch */
+    double way[2];          /* from the tail to this end, m */
 };
 
-/* Two views of the wake of a fish. The oldest n_single stretches have the middle in both views; the points differ in
- * the smoothing. Point vortices are in middles only. */
+/* Two views of the wake of a fish. The first n_markers points of both are the markers of old stretches, the next
+ * n_single points the middles of young stretches from wake.n_old on; these points differ in the smoothing. Point
+ * vortices are in middles only. */
+enum { SHEET_PAD = STRETCH_MARKERS - 1, SHEET_DIAGONALS = 2 * SHEET_PAD + 1 };
 struct sheet {
     struct arena *arena;
     struct sheet_points graded, middles;
-    int n_single, capacity;
-    /* workspace: markers at both ends of the interval or at one time, labels, lengths of stretches */
-    double *x[2], *y[2], *label, *length[2];
+    int n_markers, n_single, capacity;
+    /* markers at both ends of the interval or at one time, and labels, behind SHEET_PAD zeros; remaining parts of
+     * labels and distances from the tail along the sheet at both ends of the interval                 (n_vortex) */
+    double *x[2], *y[2], *label, *remains[2], *distance[2];
+    /* diagonals k of the matrix of all forms: old marker i has the part k of label i + k - SHEET_PAD  (n_markers) */
+    double *diagonal[SHEET_DIAGONALS];
 };
 
 /* Make room for a wake of n vortices or markers. */
 void sheet_reserve(struct arena *arena, struct sheet *sheet, int n);
 
-/* Select the points of the interval that starts at the event, after sheet_reserve. */
-void sheet_build(struct sheet *sheet, const struct fish *fish, const struct school *school, const struct wake *wake);
+/* Select the points of the interval that starts at the event at time t, after sheet_reserve. */
+void sheet_build(struct sheet *sheet, const struct fish *fish, const struct school *school, const struct wake *wake,
+                 double t);
 
 /* Set the released points to the time tau after the event at time t. */
 void sheet_place(struct sheet *sheet, const struct school *school, const struct wake *wake, double t, double tau);
@@ -87,10 +96,17 @@ double sheet_place_nascent(struct sheet_points *points, const struct school *sch
 void sheet_place_steady(struct sheet *sheet, struct sheet_points *points, const struct fish *fish, const double tail[2],
                         const double along[2], double shed, double reach);
 
-/* Append the markers as sources at markers, at the event at time t; nascent: circulation of the nascent stretch, which
- * has length 0. */
-void sheet_markers(struct sources *sources, const struct fish *fish, const struct school *school,
-                   const struct wake *wake, double t, double nascent);
+/* Append the markers as sources at markers, at the event at time t at which the sheet is placed; nascent: circulation
+ * of the nascent stretch, which has length 0. */
+void sheet_markers(struct sources *sources, const struct sheet *sheet, const struct fish *fish,
+                   const struct school *school, const struct wake *wake, double t, double nascent);
+
+/* The change of a value at the markers (n_vortex), towards the newest one, that marker i has by the forms of old
+ * stretches, and as half of both adjacent young ones. */
+double sheet_change(const struct sheet *sheet, const struct wake *wake, int i, const double *value);
+
+/* The vector dx along the sheet that belongs to released point i, without the circulation, m. */
+void sheet_line(const struct sheet *sheet, const struct sheet_points *points, int i, double line[2]);
 
 /* The newest marker tau after the event; the tail if there are no markers. */
 void sheet_newest(const struct wake *wake, double interval, double tau, const double tail[2], double point[2]);

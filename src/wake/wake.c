@@ -85,7 +85,7 @@ void wake_marker(const struct wake *wake, int i, double interval, double tau, do
     position[1] = along_path(wake->y[i], wake->v[i], wake->v_before[i], tau, interval);
 }
 
-static double wake_label(const struct wake *wake, int i, double interval, double tau) {
+double wake_label(const struct wake *wake, int i, double interval, double tau) {
     return along_path(wake->circulation[i], wake->rate[i], wake->rate_before[i], tau, interval);
 }
 
@@ -116,44 +116,30 @@ void wake_places(const struct wake *wake, double interval, double tau, double *r
     }
 }
 
-int wake_first_decaying(const struct wake *wake, const struct school *school, double t) {
-    int i = 0;
-    while (i < wake->n_vortex && t - wake->birth[i] + school->interval > age_of_decay(school)) i++;
-    return i < wake->n_vortex ? i : wake->n_vortex - 1;
+double wake_part_of_label(const struct wake *wake, const struct school *school, double t, double q, int i) {
+    if (wake->has_markers && !school->finite) return 1;
+    return wake_strength_within(school, t - wake->birth[i], q);
 }
 
-double wake_next_strength(struct wake_decay *decay, int i) {
-    const struct wake *const wake = decay->wake;
-    const double label = wake_label(wake, i, decay->school->interval, decay->tau);
-    const double part = wake_strength_within(decay->school, decay->t - wake->birth[i], decay->q);
-    if (!wake->has_markers || decay->school->finite) return part * label;
-
-    // the stretch behind the newer marker decays; the first label does not
-    decay->sum = decay->has_newer ? decay->sum - decay->part * (decay->label - label) : label;
-    decay->has_newer = true;
-    decay->label = label;
-    decay->part = part;
-    return decay->sum;
+double wake_part_of_stretch(const struct wake *wake, const struct school *school, double t, double q, int j) {
+    return school->finite ? 1 : wake_strength_within(school, t - wake->birth[j + 1], q);
 }
 
-void wake_strengths(const struct wake *wake, const struct school *school, double t, double tau, double q,
-                    double *strength) {
-    struct wake_decay decay = {.wake = wake, .school = school, .t = t, .tau = tau, .q = q};
-    const int first = wake_first_decaying(wake, school, t);
-    for (int i = first; i >= 0; i--) strength[i] = wake_next_strength(&decay, i);
-    for (int i = first + 1; i < wake->n_vortex; i++) strength[i] = wake_label(wake, i, school->interval, tau);
+double wake_part_of_marker(const struct wake *wake, const struct school *school, double t, double q, int i) {
+    return school->finite ? 1 : wake_strength_within(school, t - wake->birth[i] - school->interval / 2, q);
 }
 
-double wake_lost(const struct wake *wake, const struct school *school, double t, double tau) {
-    double lost = wake->removed;
+double wake_strength_of(const struct wake *wake, const struct school *school, double t, double tau, int i) {
+    const double part = wake_part_of_label(wake, school, t, tau / school->interval, i);
+    return part * wake_label(wake, i, school->interval, tau);
+}
 
-    for (int i = 0; i < wake_n_sources(wake); i++) {
-        const double age = t - wake->birth[i + wake->has_markers];
-        if (age + school->interval <= age_of_decay(school)) break;
-        lost += wake_source(wake, i) * (1 - wake_strength_within(school, age, tau / school->interval));
-    }
+void wake_labels(const struct wake *wake, double interval, double tau, double *restrict label) {
+    for (int i = 0; i < wake->n_vortex; i++) label[i] = wake_label(wake, i, interval, tau);
+}
 
-    return lost;
+void wake_strengths(const struct wake *wake, const struct school *school, double t, double tau, double *strength) {
+    for (int i = 0; i < wake->n_vortex; i++) strength[i] = wake_strength_of(wake, school, t, tau, i);
 }
 
 void wake_advance(struct wake *wake, double interval) {
@@ -169,32 +155,36 @@ void wake_advance(struct wake *wake, double interval) {
     }
 }
 
-int wake_n_old(const struct wake *wake, const struct school *school, double t) {
+void wake_remove_old(struct wake *wake, const struct school *school, double t) {
     // ages are multiples of the interval; the margin makes the comparison independent of rounding
     const double rounding = school->interval * (decays_in_one_interval(school) ? 1e-6 : 0.5);
 
     // the age of a stretch is the age of the newer marker
     const int newer = wake->has_markers;
-
-    int n_old = 0;
-    while (n_old + newer < wake->n_vortex && t - wake->birth[n_old + newer] > school->lifetime - rounding) {
-        n_old++;
+    int n = 0;
+    while (n + newer < wake->n_vortex && t - wake->birth[n + newer] > school->lifetime - rounding) {
+        wake->removed += wake_source(wake, n++);
     }
-
-    return n_old;
-}
-
-void wake_remove_old(struct wake *wake, const struct school *school, double t) {
-    const int n_old = wake_n_old(wake, school, t);
-    if (n_old == 0) return;
-    for (int i = 0; i < n_old; i++) wake->removed += wake_source(wake, i);
+    if (n == 0) return;
 
     wake->version++;
-    wake->n_vortex -= n_old;
+    wake->n_vortex -= n;
     double **array[N_ARRAYS];
     wake_list_arrays(wake, array);
-    for (int i = 0; i < N_ARRAYS; i++)
-        memmove(*array[i], *array[i] + n_old, (size_t)wake->n_vortex * sizeof **array[i]);
+    for (int i = 0; i < N_ARRAYS; i++) memmove(*array[i], *array[i] + n, (size_t)wake->n_vortex * sizeof **array[i]);
+    wake->n_old = wake->n_old > n ? wake->n_old - n : 0;
+}
+
+void wake_drop(struct wake *wake, int i) {
+    double **array[N_ARRAYS];
+    wake_list_arrays(wake, array);
+    for (int k = 0; k < N_ARRAYS; k++) {
+        double *const at = *array[k] + i;
+        memmove(at, at + 1, (size_t)(wake->n_vortex - 1 - i) * sizeof *at);
+    }
+    wake->n_vortex--;
+    if (i < wake->n_old) wake->n_old--;
+    wake->version++;
 }
 
 void wake_add_shed(struct wake *wake, double circulation) {
@@ -256,6 +246,7 @@ enum status wake_add_vortex(struct wake *wake, const struct school *school, doub
     }
 
     wake->n_vortex += N_MARKERS;
+    if (i < wake->n_old) wake->n_old += N_MARKERS;
 
     // both ends of the stretch are at the vortex; subtract the circulation from the labels up to the older end
     for (int m = 1; m <= 2; m++) {
@@ -277,7 +268,7 @@ enum status wake_break(struct wake *wake, const struct school *school, double t,
 }
 
 void wake_leave_behind(struct wake *wake, double shed) {
-    wake->n_vortex = 0;
+    wake->n_vortex = wake->n_old = 0;
     wake->shed_before = wake->removed = shed;
     wake->version++;
 }

@@ -29,7 +29,7 @@ struct wake {
     double *rate, *rate_before;  /* rate of labels at the same events, m2 s-2; 0 without rings (n_vortex) */
     double *birth;               /* time of release, s                                (n_vortex) */
     int has_markers;             /* the queue holds markers of a sheet: sheet.h */
-    int n_merged;                /* number of vortices merged with a neighbour so far: wake_merge.h */
+    int n_old;                   /* number of old stretches, the oldest ones: stretch.h */
     int n_added;                 /* number of vortices added from outside so far: at most wake_spare */
     double tail_velocity[2], tail_tangent[2]; /* at the last event, m s-1 and 1; only with markers */
     double removed;                           /* circulation of all vortices removed so far, m2 s-1 */
@@ -53,28 +53,21 @@ void wake_release(struct wake *wake, double x, double y, double circulation, dou
 /* Positions of all vortices or markers at the time tau after the last event (n_vortex). */
 void wake_places(const struct wake *wake, double interval, double tau, double *restrict x, double *restrict y);
 
-/* Circulations of all vortices, or labels of all markers, at the time tau after the last event at time t, less the
- * decay up to the fraction q of the interval (n_vortex). With span: finite the labels decay, so that rings stay
- * closed, else the circulations of the stretches. */
-void wake_strengths(const struct wake *wake, const struct school *school, double t, double tau, double q,
-                    double *strength);
+/* The label of marker i, or circulation of vortex i, without decay; of all (n_vortex). */
+double wake_label(const struct wake *wake, int i, double interval, double tau);
+void wake_labels(const struct wake *wake, double interval, double tau, double *restrict label);
 
-/* wake_strengths one by one, from wake_first_decaying, or any newer vortex, to the oldest. */
-struct wake_decay {
-    const struct wake *wake;
-    const struct school *school;
-    double t, tau, q;
-    bool has_newer;
-    double sum, label, part; /* of the next newer marker: strength, label, remaining part of the circulation behind */
-};
-double wake_next_strength(struct wake_decay *decay, int i);
+/* What remains of the label of marker i, or of vortex i, at the fraction q of the interval after the event at time t;
+ * of young stretch j; of the circulation of old marker i (stretch.h). With span: finite the labels decay, so that rings
+ * stay closed, else circulations. */
+double wake_part_of_label(const struct wake *wake, const struct school *school, double t, double q, int i);
+double wake_part_of_stretch(const struct wake *wake, const struct school *school, double t, double q, int j);
+double wake_part_of_marker(const struct wake *wake, const struct school *school, double t, double q, int i);
 
-/* The newest vortex that may decay within the interval after the event at time t, or the next newer one: no newer
- * vortex decays. -1: an empty wake. */
-int wake_first_decaying(const struct wake *wake, const struct school *school, double t);
-
-/* Lost circulation, tau after the event at time t: removed vortices, and decayed circulation. */
-double wake_lost(const struct wake *wake, const struct school *school, double t, double tau);
+/* The label of marker i, or the circulation of vortex i, at the time tau after the event at time t, times what remains;
+ * of all (n_vortex). */
+double wake_strength_of(const struct wake *wake, const struct school *school, double t, double tau, int i);
+void wake_strengths(const struct wake *wake, const struct school *school, double t, double tau, double *strength);
 
 /* Advance all vortices to the next event. */
 void wake_advance(struct wake *wake, double interval);
@@ -92,12 +85,12 @@ double wake_circulation(const struct wake *wake, int i);
 int wake_n_sources(const struct wake *wake);
 double wake_source(const struct wake *wake, int i);
 
-/* Number of vortices with an age of at least a lifetime at time t; for markers: number of such stretches. Old vortices
- * have no strength, except with impulsive shedding. */
-int wake_n_old(const struct wake *wake, const struct school *school, double t);
-
-/* Remove the old vortices. */
+/* Remove the vortices with an age of at least a lifetime at time t; of markers such stretches. These have no strength,
+ * except with impulsive shedding. */
 void wake_remove_old(struct wake *wake, const struct school *school, double t);
+
+/* Remove marker i from the sheet: the stretches on both sides become one. */
+void wake_drop(struct wake *wake, int i);
 
 /* Add shed circulation, m2 s-1, at infinite distance: no vortex changes. */
 void wake_add_shed(struct wake *wake, double circulation);

@@ -35,7 +35,7 @@ static void add_fish(const struct setup *setup, int g, double x, double y, doubl
     double px[16], py[16], strength[16], nascent[2];
 
     wake_places(wake, interval, tau, px, py);
-    wake_strengths(wake, setup->school, state->t, tau, tau / interval, strength);
+    wake_strengths(wake, setup->school, state->t, tau, strength);
     const double tail[2] = {state->y[fish->at.x + fish->n_nodes - 1], state->y[fish->at.y + fish->n_nodes - 1]};
     wake_nascent(wake, tau, tail, nascent);
     for (int i = 0; i < wake->n_vortex; i++) add_vortex(strength[i], x, y, px[i], py[i], fish->smoothing, u, v);

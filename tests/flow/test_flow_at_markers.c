@@ -31,13 +31,9 @@ static double random_in(struct setup *setup, double low, double high) {
 static void make_wakes(struct setup *setup) {
     for (int f = 0; f < N_FISH; f++) {
         const struct fish *const fish = &setup->school->fish[f];
-        struct wake *const wake = &setup->state->wake[f];
-        double *const y = setup->state->y;
-        const int last = fish->n_nodes - 1;
-        const double tail[2] = {y[fish->at.x + last], y[fish->at.y + last]};
-        const struct direction body = fish_direction(fish, &fish->tail_tangent, y);
-        wake_resize(wake, N_MARKERS);
-        double label = 0;
+        double tail[2], label = 0;
+        struct wake *const wake = school_wake(setup, f, N_MARKERS, tail);
+        const struct direction body = fish_direction(fish, &fish->tail_tangent, setup->state->y);
         for (int i = 0; i < N_PAIRS; i++) {
             const double along = fish->length * random_in(setup, -0.6, 1.2);
             const double across = fish->length * random_in(setup, -0.4, 0.4);
@@ -52,15 +48,7 @@ static void make_wakes(struct setup *setup) {
         wake->x[N_MARKERS - 1] = tail[0];
         wake->y[N_MARKERS - 1] = tail[1];
         wake->circulation[N_MARKERS - 1] = label;
-        for (int i = 0; i < N_MARKERS; i++) {
-            wake->u[i] = wake->v[i] = wake->u_before[i] = wake->v_before[i] = 0;
-            wake->rate[i] = wake->rate_before[i] = 0;
-            wake->birth[i] = setup->state->t - 0.01 * (N_MARKERS - 1 - i);
-        }
-
-        wake_set_tail(wake, (const double[]){0, 0}, body.t);
-        wake->shed_before = label;
-        y[fish->at.circulation] = label;
+        school_shed(setup, f);
     }
 }
 

@@ -39,12 +39,18 @@ static void build(struct setup *setup, const char *fluid, const char *fish) {
     if (kind == THIRD) setup->residual->flow->kernel = third_kernel();
 }
 
-/* Label of marker i less the decay. */
+/* Label of marker i less the decay; without legs of all stretches up to the newest marker. */
 static double label_of(const struct setup *setup, const struct wake *wake, int i, double tau) {
     double label[64];
     assert_in_range(wake->n_vortex, 1, 64);
-    wake_strengths(wake, setup->school, setup->state->t, tau, tau / setup->school->interval, label);
-    return label[i];
+    wake_strengths(wake, setup->school, setup->state->t, tau, label);
+    if (setup->school->finite || !wake->has_markers) return label[i];
+    double sum = label[wake->n_vortex - 1];
+    for (int j = wake->n_vortex - 2; j >= i; j--) {
+        const double age = setup->state->t - wake->birth[j + 1];
+        sum -= wake_strength_within(setup->school, age, tau / setup->school->interval) * (label[j + 1] - label[j]);
+    }
+    return sum;
 }
 
 /* Velocity and divergence at a target. */
@@ -477,10 +483,10 @@ TEST(legs_of_graded_points_begin_at_the_tail) {
                 double newer[2] = {wake->x[newest] + end * interval * wake->tail_velocity[0],
                                    wake->y[newest] + end * interval * wake->tail_velocity[1]},
                        older[2], distance = 0;
-                for (int k = newest; k >= sheet->stretch[i]; k--) {
+                for (int k = newest; k >= sheet->older[i]; k--) {
                     wake_marker(wake, k, interval, end * interval, older);
                     const double length = hypot(newer[0] - older[0], newer[1] - older[1]);
-                    distance += k > sheet->stretch[i] ? length : sheet->xi[i] * length;
+                    distance += k > sheet->older[i] ? length : sheet->xi[i] * length;
                     for (int j = 0; j < 2; j++) newer[j] = older[j];
                 }
                 NEAR(sheet->sources.leg[i], w * w / 8 * (1 - exp(-pow(distance / (3 * w), 4))), 1e-15, 1e-9);

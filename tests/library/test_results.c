@@ -595,7 +595,6 @@ enum { N_ASSIGNMENTS = sizeof assignments / sizeof *assignments, MAX_ASSIGNED = 
 /* Keys without influence on two intervals: files, limits and machines, steady states, what only a program uses. */
 static const char keys_elsewhere[] =
     " format name include time.end time.output_interval time.checkpoint_interval time.checkpoint_wall wake.tolerance "
-    "wake.merge "
     "wake.spare_vortices solver.rtol solver.order solver.error_test solver.coupling_distance solver.linear "
     "solver.threads "
     "solver.max_steps output.file "

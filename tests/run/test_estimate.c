@@ -86,14 +86,15 @@ TEST(a_wake_that_grows_costs_more_than_its_first_events) {
     char text[sizeof long_run + 20];
     double seconds[2];
     for (int i = 0; i < 2; i++) {
-        snprintf(text, sizeof text, long_run, i == 0 ? 1 : 100);
+        snprintf(text, sizeof text, long_run, i == 0 ? 1 : 1000);
         seconds[i] = estimate_of(text, 0.05).seconds;
     }
     ABOVE(seconds[1], 5 * seconds[0]);
 }
 
 TEST(every_event_is_as_costly_as_those_measured_after_the_first) {
-    static const char text[] = "time: {end: 8, shedding_interval: 0.02}\nwake: {lifetime: 6}\n" FISH;
+    // the decay is too short for dropping
+    static const char text[] = "time: {end: 8, shedding_interval: 0.02}\nwake: {lifetime: 6, decay: 0.2}\n" FISH;
     counts_evaluations = 1;
     // time for a few events and for wakes that are made up
     const struct estimate estimate = estimate_of(text, 0.1);
@@ -161,7 +162,7 @@ TEST(every_kind_of_wake_can_be_made_up) {
     for (int i = 0; i < 3; i++) {
         struct simulation *const simulation = school_simulation_of(
             "time: {end: 10, shedding_interval: 0.02, output_interval: 0.02}\n"
-            "wake: {shedding: %s, lifetime: 10}\n" FISH,
+            "wake: {shedding: %s, lifetime: 10, decay: 0.2}\n" FISH,
             kinds[i]);
         struct estimate estimate;
         school_ok(estimate_run(simulation, 1, &estimate));

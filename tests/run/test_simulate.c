@@ -203,20 +203,6 @@ static const char *read_attribute(const char *path, const char *name) {
     return text;
 }
 
-TEST(notes_of_a_run_count_the_vortices_of_all_fish) {
-    const char *const path = *state;
-    const struct simulate_options options = {.path = path, .overwrite = 1, .command = "test"};
-    run_into(SMALL "wake: {merge: 0.01}\nfish: [{}, {start: {position: [0, 2]}}, {start: {position: [0, 4]}}]\n",
-             &options, STATUS_OK);
-    // a marker at the start and at 25 events, of three fish
-    assert_string_equal(read_attribute(path, "merged_vortices"),
-                        "0 merged with a neighbour; 78 vortices in the wakes at the end");
-    // nothing is said of what does not happen
-    run_into(SMALL "fish: [{}]\n", &options, STATUS_OK);
-    const char *const none = read_attribute(path, "merged_vortices");
-    assert_int_equal(strspn(none, " "), strlen(none));
-}
-
 /* The checkpoint of a result, with an ending. */
 static const char *checkpoint_of(const char *result, const char *ending) {
     static char path[128];

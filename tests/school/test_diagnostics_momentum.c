@@ -82,8 +82,8 @@ TEST(the_balance_is_closed_with_every_external_force) {
          "motion: {prescribed: head, heave: 0.02, pitch: 3, frequency: 1, phase: 90}}]\n"},
         {"separation at the nose, half of the suction",
          "fish: [{" SWIMMER "body: {depth: 1}, pressure: {span: infinite, suction: 0.5, suction_limit: 0.01}}]\n"},
-        {"merged vortices",
-         "wake: {lifetime: 3, merge: 1e-2}\n"
+        {"dropped markers",
+         "wake: {lifetime: 3}\n"
          "fish: [{force: pressure, pressure: {span: infinite}, nodes: 9, sheet_points: 33, wave: {amplitude: 0}, "
          "body: {depth: 1, profile: uniform, thickness: 0.1}, drag: {skin: laminar}, "
          "start: {speed: 4}, motion: {prescribed: all, heave: 0.02, frequency: 1, phase: 90}}]\n"},
@@ -93,7 +93,7 @@ TEST(the_balance_is_closed_with_every_external_force) {
          "all, surge: free, heave: 0.02, frequency: 1, phase: 90}}]\n"},
         {"finite span", "wake: {lifetime: 0.8, decay: 0.6}\nfish: [{" STRIP "}]\n"},
         {"finite span, no fade", "wake: {lifetime: 0.5, decay: 0}\nfish: [{" STRIP "}]\n"},
-        {"finite span, merged", "wake: {lifetime: 10, merge: 0.1}\nfish: [{" STRIP "}]\n"},
+        {"finite span, dropped markers", "wake: {lifetime: 10}\nfish: [{" STRIP "}]\n"},
         {"finite span, shear and gust",
          "fluid: {velocity: [0.2, 0], shear: 0.3, gust: {amplitude: 0.1, frequency: 1}}\n"
          "wake: {lifetime: 0.8, decay: 0.6}\nfish: [{" STRIP "}]\n"},

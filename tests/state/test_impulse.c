@@ -62,8 +62,7 @@ static double wither(const char *text) {
         impulse_fade(setup.school, setup.state, 0);
         wake_advance(wake, interval);
         setup.state->t += interval;
-        impulse_remove(setup.school, setup.state, 0);
-        wake_remove_old(wake, setup.school, setup.state->t);
+        impulse_thin_wake(setup.school, setup.state, 0);
         all_of(&setup, now);
         if (setup.school->removed == REMOVED_RETAINED) NEAR_ARRAY(3, now, before, 1e-14, 1e-13);
     }
@@ -115,24 +114,4 @@ TEST(what_is_dropped_goes_to_the_tail) {
         NEAR(booked[0], before.x - after.x - lost * tail[0], 1e-15, 1e-13);
         NEAR(booked[1], before.y - after.y - lost * tail[1], 1e-15, 1e-13);
     }
-}
-
-TEST(what_merging_changes_is_booked) {
-    enum { N = 200 };
-    struct setup setup = setup_stirred(
-        TIME
-        "wake: {lifetime: 8, decay: 6, merge: 0.01, shedding: sheet}\nsheet: {curve: smooth}\nfish: [{nodes: 5}]\n");
-    struct wake *const wake = &setup.state->wake[0];
-    wake_resize(wake, 0);
-    setup.state->t = 5;
-    for (int i = 0; i < N; i++) wake_release(wake, 20 - 0.05 * i, 0.1 * sin(0.3 * i), 0.1 * sin(0.2 * i), 0.02 * i);
-    double before[3], after[3];
-    all_of(&setup, before);
-    for (setup.state->event = 0; setup.state->event < WAKE_MERGE_EVENTS; setup.state->event++) {
-        wake_merge(setup.school, setup.state);
-    }
-    all_of(&setup, after);
-    BELOW(wake->n_vortex, N - 20);
-    NEAR_ARRAY(3, after, before, 1e-12, 1e-12);
-    ABOVE(fabs(setup.state->momentum[0].lost[2]), 1e-6);
 }

@@ -69,7 +69,6 @@ TEST(the_keys_of_the_table_have_the_levels_of_the_table) {
     levels_are(&study, "wake.lifetime", 4, (double[]){12, 6, 3, 1.5}, 3);
     assert_null(key_of(&study, "wake.smoothing"));
     assert_null(key_of(&study, "solver.step"));
-    assert_null(key_of(&study, "wake.merge"));
 
     // each member changes one key and dependent keys; one sheet serves all nodes, and is a level of the sheet
     const struct error_study_key *const nodes = key_of(&study, "fish.nodes");
@@ -291,7 +290,7 @@ TEST(quantities_that_are_not_known_are_refused) {
         {"{of: nose}", "'nose' is no number of a result"},
         {"{of: [speed, steady_speed]}", "speed is of a run and steady_speed of a steady state"},
         {"{of: [speed, speed]}", "speed is there twice"},
-        {"{of: steady_speed, keys: [step, merge]}", "none of these keys changes anything"},
+        {"{of: steady_speed, keys: [step, transition]}", "none of these keys changes anything"},
         {"{of: steady_speed, keys: {nodes: [2, 9]}}", "level 2"},
     };
     for (size_t i = 0; i < sizeof examples / sizeof *examples; i++) {

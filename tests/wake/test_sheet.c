@@ -12,9 +12,9 @@
 
 TEST(the_panel_integrates_the_inverse_square_root) {
     struct setup setup = setup_of(SMALL SHEET "fish: [{}]\n");
-    struct sheet sheet = {.n_single = 0};
+    struct sheet sheet = {.n_markers = 0};
     sheet_reserve(setup.arena, &sheet, 0);
-    sheet_build(&sheet, setup.school->fish, setup.school, setup.state->wake);
+    sheet_build(&sheet, setup.school->fish, setup.school, setup.state->wake, setup.state->t);
     const struct sheet_points *const panel = &sheet.graded;
     assert_int_equal(panel->n_released, 0);
     assert_int_equal(panel->n_nascent, SHEET_PANEL);
@@ -72,7 +72,7 @@ TEST(a_marker_of_a_tail_that_moves_backwards_stays_at_the_tail) {
 
 #define SPAN(word) "fish: [{nodes: 7, pressure: {span: " word "}}]\n"
 
-// every view has the circulation Gamma(t) less the label of the oldest marker; a middle has the whole stretch
+// every view has the circulation of all stretches, the nascent one included; a middle has the whole stretch
 TEST(every_view_has_the_same_circulation) {
     static const char *const fish[] = {SPAN("infinite"), SPAN("finite")};
     for (int k = 0; k < 2; k++) {
@@ -85,18 +85,20 @@ TEST(every_view_has_the_same_circulation) {
         const struct sheet *const sheet = &of->wake;
         const struct sources *const middles = &sheet->middles.sources;
         struct sources markers = {.arena = test_arena()};
-        double label[16], sum[3] = {0, 0, 0};
+        double label[16], sum[3] = {0, 0, 0}, stretches = 0;
         AT_MOST(wake->n_vortex, 16);
-        wake_strengths(wake, setup.school, setup.t, 0, 0, label);
-        sheet_markers(&markers, setup.school->fish, setup.school, wake, setup.t, of->nascent);
+        wake_strengths(wake, setup.school, setup.t, 0, label);
+        sheet_markers(&markers, sheet, setup.school->fish, setup.school, wake, setup.t, of->nascent);
         for (int i = 0; i < sheet->middles.n_released; i++) {
             NEAR(middles->x[i], (wake->x[i] + wake->x[i + 1]) / 2, 1e-15, 0);
-            NEAR(middles->q[i], label[i + 1] - label[i], 1e-15, 0);
+            const double age = setup.t - wake->birth[i + 1], part = wake_strength_within(setup.school, age, 0);
+            NEAR(middles->q[i], (k == 0 ? part : 1) * (label[i + 1] - label[i]), 1e-15, 0);
+            stretches += middles->q[i];
         }
         for (int i = 0; i < sheet->graded.sources.n; i++) sum[0] += sheet->graded.sources.q[i];
         for (int i = 0; i < middles->n; i++) sum[1] += middles->q[i];
         for (int i = 0; i < markers.n; i++) sum[2] += markers.q[i];
-        const double all = setup.state->y[setup.school->fish->at.circulation] - label[0];
+        const double all = setup.state->y[setup.school->fish->at.circulation] - label[wake->n_vortex - 1] + stretches;
         ABOVE(fabs(all), 0.01);
         for (int i = 0; i < 3; i++) NEAR(sum[i], all, 1e-13, 0);
     }
@@ -110,14 +112,14 @@ TEST(legs_grow_along_the_sheet_and_old_stretches_have_fewer_points) {
     struct wake *const wake = &setup.state->wake[0];
     const double w = fish->strip_depth, spacing = 0.7 * w;
     for (int i = N - 1; i >= 0; i--) wake_release(wake, i * spacing, 0, 0.1 * i, setup.state->t - 0.02 * i);
-    struct sheet sheet = {.n_single = 0};
+    struct sheet sheet = {.n_markers = 0};
     sheet_reserve(setup.arena, &sheet, N);
-    sheet_build(&sheet, fish, setup.school, wake);
+    sheet_build(&sheet, fish, setup.school, wake, setup.state->t);
 
     // four points on the newest stretch, two on the next three, one on older ones
     int n_points[N] = {0};
     for (int i = 0; i < sheet.graded.n_released; i++) {
-        const int age = N - 1 - sheet.graded.stretch[i];
+        const int age = N - 1 - sheet.graded.older[i];
         const double distance = (age - 1 + sheet.graded.xi[i]) * spacing;
         NEAR(sheet.graded.leg[0][i], w * w / 8 * (1 - exp(-pow(distance / (3 * w), 4))), 1e-15, 1e-12);
         n_points[age]++;
@@ -125,22 +127,25 @@ TEST(legs_grow_along_the_sheet_and_old_stretches_have_fewer_points) {
     for (int age = 1; age < N; age++) assert_int_equal(n_points[age], age == 1 ? 4 : age <= 4 ? 2 : 1);
 }
 
-// with finite span labels decay; else the circulation of every stretch decays with the age of the newer marker
+// with finite span labels decay; else the circulation of every young stretch decays with the age of the newer marker
 TEST(stretches_decay_by_labels_only_if_rings_must_stay_closed) {
     static const char *const fish[] = {SPAN("infinite"), SPAN("finite")};
     for (int k = 0; k < 2; k++) {
         struct setup setup = setup_with(TIME "wake: {shedding: sheet, lifetime: 0.2, decay: 0.15}\n%s", fish[k]);
         struct wake *const wake = &setup.state->wake[0];
         for (int i = 0; i < 8; i++) wake_release(wake, i, sin(i), 0.1 * cos(i), setup.state->t - 0.02 * (8 - i));
-        double label[8], part[8];
-        wake_strengths(wake, setup.school, setup.state->t, 0, 0.3, label);
+        struct sheet sheet = {.n_markers = 0};
+        sheet_reserve(setup.arena, &sheet, 8);
+        sheet_build(&sheet, setup.school->fish, setup.school, wake, setup.state->t);
+        sheet_place(&sheet, setup.school, wake, setup.state->t, 0.3 * setup.school->interval);
+        double part[8];
         for (int i = 0; i < 8; i++) part[i] = wake_strength_within(setup.school, 0.02 * (8 - i), 0.3);
         BELOW(part[0], 0.2);
         ABOVE(part[7], 0.9);
         for (int i = 0; i < 7; i++) {
             const double by_labels = part[i + 1] * wake->circulation[i + 1] - part[i] * wake->circulation[i];
             const double by_stretch = part[i + 1] * (wake->circulation[i + 1] - wake->circulation[i]);
-            NEAR(label[i + 1] - label[i], k == 0 ? by_stretch : by_labels, 1e-15, 1e-13);
+            NEAR(sheet.middles.sources.q[i], k == 0 ? by_stretch : by_labels, 1e-15, 1e-13);
             ABOVE(fabs(by_labels - by_stretch), 1e-4);
         }
     }

@@ -3,6 +3,7 @@
 
 #include "base/mathematics.h"
 #include "school.h"
+#include "state/state.h"
 #include "wake/wake.h"
 
 #define SMALL "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\ndefaults: {fish: {nodes: 7}}\n"
@@ -10,7 +11,7 @@
 static void at_time(const struct wake *wake, const struct school *school, double t, double tau, double *x, double *y,
                     double *strength) {
     wake_places(wake, school->interval, tau, x, y);
-    wake_strengths(wake, school, t, tau, tau / school->interval, strength);
+    wake_strengths(wake, school, t, tau, strength);
 }
 
 TEST(release_keeps_what_is_there_while_it_grows) {
@@ -127,7 +128,7 @@ TEST(strength_within_an_interval_joins_the_strengths_at_its_ends) {
                 NEAR(wake_strength_within(setup.school, age, q / 2.0), want, 1e-15, 0);
                 at_time(wake, setup.school, age, q * 0.01, &x, &y, &strength);
                 NEAR(strength, 2 * want, 1e-14, 0);
-                NEAR(wake_lost(wake, setup.school, age, q * 0.01), 2 * (1 - want), 1e-14, 0);
+                NEAR(impulse_lost_circulation(wake, setup.school, age, q * 0.01), 2 * (1 - want), 1e-14, 0);
             }
         }
     }
@@ -160,12 +161,12 @@ TEST(without_fade_a_vortex_vanishes_within_one_interval) {
     // a vortex stays until its strength is 0; the lost circulation is counted meanwhile
     wake_remove_old(wake, setup.school, 0.1);
     assert_int_equal(wake->n_vortex, 1);
-    NEAR(wake_lost(wake, setup.school, 0.1, 0), 1.5, 1e-13, 0);
-    NEAR(wake_lost(wake, setup.school, 0.1, 0.01), 1.75, 1e-13, 0);
-    NEAR(wake_lost(wake, setup.school, 0.1, 0.02), 2, 1e-13, 0);
+    NEAR(impulse_lost_circulation(wake, setup.school, 0.1, 0), 1.5, 1e-13, 0);
+    NEAR(impulse_lost_circulation(wake, setup.school, 0.1, 0.01), 1.75, 1e-13, 0);
+    NEAR(impulse_lost_circulation(wake, setup.school, 0.1, 0.02), 2, 1e-13, 0);
     wake_remove_old(wake, setup.school, 0.12);
     assert_int_equal(wake->n_vortex, 0);
-    NEAR(wake_lost(wake, setup.school, 0.12, 0), 2, 0, 0);
+    NEAR(impulse_lost_circulation(wake, setup.school, 0.12, 0), 2, 0, 0);
 }
 
 TEST(a_stretch_is_as_old_as_its_newer_marker) {
@@ -183,7 +184,7 @@ TEST(a_stretch_is_as_old_as_its_newer_marker) {
             lost += (2 * i + 1) * (1 - wake_strength_within(setup.school, age, tau / 0.02));
         }
         ABOVE(lost, 0.1);
-        NEAR(wake_lost(wake, setup.school, 0.08, tau), lost, 1e-13, 0);
+        NEAR(impulse_lost_circulation(wake, setup.school, 0.08, tau), lost, 1e-13, 0);
     }
 }
 

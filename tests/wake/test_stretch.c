@@ -1,0 +1,306 @@
+/* test_stretch.c: the form of old stretches, and dropping of markers. doc/model.md, section 7; doc/numerics.md, section
+ * 13. */
+#include <stdio.h>
+
+#include "run/simulate.h"
+#include "school.h"
+#include "state/state.h"
+#include "wake/sheet.h"
+#include "wake/stretch.h"
+
+#define TIME "time: {end: 4, shedding_interval: 0.02, output_interval: 0.02}\n"
+#define FISH(span) "fish: [{nodes: 13, force: pressure, pressure: {span: " span "}}]\n"
+
+static double cube(double t) {
+    return 1 + t * (2 - t * (3 - 4 * t));
+}
+static double cube_slope(double t) {
+    return 2 - t * (6 - 12 * t);
+}
+
+// integral of f dg for cubic f and g, by Simpson's rule in many steps
+static double integral(double from, double to) {
+    enum { STEPS = 1000 };
+    double sum = 0;
+    for (int k = 0; k < STEPS; k++) {
+        const double h = (to - from) / STEPS, a = from + k * h, m = a + h / 2, b = a + h;
+        sum += h / 6 * (cube(a) * cube_slope(1 - a) + 4 * cube(m) * cube_slope(1 - m) + cube(b) * cube_slope(1 - b));
+    }
+    return -sum;  // the rate of cube(1 - t)
+}
+
+TEST(cubic_integrals_are_exact_at_any_spacing) {
+    struct setup setup = setup_of(TIME FISH("finite"));
+    struct wake *const wake = &setup.state->wake[0];
+    const double birth[] = {0, 0.2, 0.3, 0.4, 0.8, 0.9};
+    for (int i = 0; i < 6; i++) wake_release(wake, i, 0, cube(1 - birth[i]), birth[i]);
+    wake->n_old = 5;
+    struct stretch_form form = {.n = 0};
+    for (int j = 0; j < 5; j++) {
+        stretch_set_form(&form, wake, setup.school, j);
+        if (j == 4) break;  // the newest stretch has no neighbour
+        assert_int_equal(form.n, 4);
+        double sum = 0;
+        for (int a = 0; a < 4; a++) {
+            double of_column = 0;
+            for (int b = 0; b < 4; b++) {
+                sum += form.part[a][b] * cube(birth[form.first + a]) * wake->circulation[form.first + b];
+                of_column += form.part[b][a];
+            }
+            // circulation goes from one end to the other, and no further
+            const int i = form.first + a;
+            NEAR(of_column, i == j + 1 ? 1 : i == j ? -1 : 0, 1e-14, 0);
+        }
+        NEAR(sum, integral(birth[j], birth[j + 1]), 1e-12, 0);
+    }
+    assert_int_equal(form.n, 2);
+}
+
+// of equal durations; the same form for every stretch but the oldest
+TEST(stretches_next_to_a_jump_of_the_times_are_linear) {
+    struct setup setup = setup_of(TIME FISH("finite"));
+    struct wake *const wake = &setup.state->wake[0];
+    const double birth[] = {0, 0.1, 0.2, 0.3, 0.3, 0.4, 0.5, 0.6, 1.5, 1.6, 1.7, 1.8};
+    const int want[] = {4, 4, 2, 2, 2, 4, 2, 2, 2, 4, 2};
+    for (int i = 0; i < 12; i++) wake_release(wake, i, 0, i, birth[i]);
+    wake->n_old = 10;
+    struct stretch_form form = {.n = 0};
+    for (int j = 0; j < 11; j++) {
+        stretch_set_form(&form, wake, setup.school, j);
+        assert_int_equal(form.n, want[j]);
+        if (form.n != 2) continue;
+        assert_int_equal(form.first, j);
+        for (int a = 0; a < 2; a++) NEAR_ARRAY(2, form.part[a], ((double[]){-0.5, 0.5}), 0, 0);
+    }
+}
+
+/* A wavy wake of n markers behind the tail, all at rest. */
+static struct setup wavy(const char *text, int n) {
+    struct setup setup = setup_of(text);
+    const struct fish *const fish = &setup.school->fish[0];
+    struct wake *const wake = &setup.state->wake[0];
+    const double *const y = setup.state->y;
+    setup.state->event = n - 1;
+    setup.state->t = fish_event_time(setup.school, n - 1);
+    for (int i = 0; i < n; i++) {
+        const double t = fish_event_time(setup.school, i), behind = 0.8 * (setup.state->t - t);
+        wake_release(wake, y[fish->at.x + fish->n_nodes - 1] + behind, 0.05 * sin(6.28 * t), 0.1 * cos(6 * t) * t, t);
+        wake->rate[i] = setup.school->finite ? 0.1 * sin(t) : 0;
+        wake->rate_before[i] = wake->rate[i];
+    }
+    return setup;
+}
+
+static double away(const struct wake *wake, int i) {
+    const int newest = wake->n_vortex - 1;
+    return hypot(wake->x[i] - wake->x[newest], wake->y[i] - wake->y[newest]);
+}
+
+TEST(dropped_markers_leave_the_others_and_the_spacing_below_the_smoothing) {
+    enum { N = 150 };
+    struct setup setup = wavy(TIME "wake: {shedding: sheet, smoothing: 0.1, lifetime: 3}\n" FISH("infinite"), N);
+    const struct fish *const fish = &setup.school->fish[0];
+    struct wake *const wake = &setup.state->wake[0];
+    stretch_find_old(wake, fish, setup.school);
+    ABOVE(away(wake, wake->n_old), 0.5 * fish->length);
+    BELOW(away(wake, wake->n_old + 1), 0.5 * fish->length);
+    const int n_young = N - wake->n_old;
+    for (int before = 0; before != wake->n_vortex;) {
+        before = wake->n_vortex;
+        stretch_drop(wake, fish, setup.school);
+    }
+    assert_int_equal(wake->n_vortex - wake->n_old, n_young);
+    BELOW(wake->n_vortex, 6 * N / 10);
+    NEAR(wake->birth[0], 0, 0, 0);
+    int n_wide = 0;
+    for (int i = 0; i + 1 < wake->n_vortex; i++) {
+        // the markers that stay are as they were
+        const double t = wake->birth[i], gap = wake->birth[i + 1] - t;
+        NEAR(wake->circulation[i], 0.1 * cos(6 * t) * t, 1e-15, 0);
+        NEAR(wake->y[i], 0.05 * sin(6.28 * t), 1e-15, 0);
+
+        // dyadic levels up to a twelfth of a beat
+        const double level = log2(gap / 0.02);
+        NEAR(level, round(level), 1e-9, 0);
+        AT_MOST(gap, 1.0001 / 12);
+        const double length = hypot(wake->x[i + 1] - wake->x[i], wake->y[i + 1] - wake->y[i]);
+        AT_MOST(length, 0.065);
+        n_wide += gap > 0.03;
+        if (i >= wake->n_old) NEAR(gap, 0.02, 1e-12, 0);
+    }
+    ABOVE(n_wide, 10);
+
+    // a pass drops no two neighbours: the first pass halves at most
+    struct setup once = wavy(TIME "wake: {shedding: sheet, smoothing: 0.1, lifetime: 3}\n" FISH("infinite"), N);
+    struct wake *const other = &once.state->wake[0];
+    stretch_find_old(other, fish, once.school);
+    stretch_drop(other, fish, once.school);
+    for (int i = 0; i + 1 < other->n_vortex; i++) AT_MOST(other->birth[i + 1] - other->birth[i], 0.0401);
+}
+
+TEST(nothing_is_dropped_where_the_wake_is_sharp_slender_or_fades_fast) {
+    static const struct {
+        const char *text;
+        double amplitude;
+        int drops;
+    } cases[] = {
+        {TIME "wake: {shedding: sheet, lifetime: 3}\n" FISH("finite"), 0, 1},
+        {TIME "wake: {shedding: sheet, lifetime: 3}\n" FISH("finite"), 0.006, 0},
+        {TIME "wake: {shedding: sheet, lifetime: 3, decay: 0.3}\n" FISH("finite"), 0, 0},
+        {TIME "wake: {shedding: sheet, lifetime: 3}\nfish: [{nodes: 13, force: pressure, sheet_points: 101, body: "
+              "{depth: 0.05}, "
+              "pressure: {span: finite}}]\n",
+         0, 0},
+    };
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+        struct setup setup = wavy(cases[c].text, 100);
+        struct wake *const wake = &setup.state->wake[0];
+        // a zigzag with angles of 40 degrees
+        for (int i = 0; i < 100; i++) wake->y[i] = cases[c].amplitude * (i % 2);
+        stretch_find_old(wake, &setup.school->fish[0], setup.school);
+        stretch_drop(wake, &setup.school->fish[0], setup.school);
+        assert_int_equal(wake->n_vortex < 100, cases[c].drops);
+    }
+}
+
+TEST(vortices_from_outside_stay) {
+    struct setup setup = wavy(TIME "wake: {shedding: sheet, lifetime: 3, spare_vortices: 3}\n" FISH("infinite"), 100);
+    struct wake *const wake = &setup.state->wake[0];
+    const struct fish *const fish = &setup.school->fish[0];
+    school_ok(wake_add_vortex(wake, setup.school, setup.state->t, 9, 1, 0.3));
+    for (int i = 0; i < 60; i++) {
+        wake_release(wake, wake->x[wake->n_vortex - 1] - 0.016, 0, 0, wake->birth[wake->n_vortex - 1] + 0.02);
+        stretch_find_old(wake, fish, setup.school);
+        stretch_drop(wake, fish, setup.school);
+    }
+    ABOVE(wake->n_old, 30);
+    int found = 0;
+    for (int j = 0; j < wake->n_old; j++) {
+        found +=
+            fabs(wake_source(wake, j) - 0.3) < 1e-12 && !(fabs(wake->x[j] - 9) > 0) && !(fabs(wake->x[j + 1] - 9) > 0);
+    }
+    assert_int_equal(found, 1);
+}
+
+// doc/model.md, sections 7, 8 and 18: at a time within an interval, for both spans, with decay
+TEST(old_stretches_act_from_their_markers_in_every_view) {
+    static const char *const fish_of[] = {FISH("infinite"), FISH("finite")};
+    for (int k = 0; k < 2; k++) {
+        char text[512];
+        snprintf(text, sizeof text, TIME "wake: {shedding: sheet, lifetime: 2.2, decay: 1.8}\n%s", fish_of[k]);
+        struct setup setup = wavy(text, 100);
+        const struct school *const school = setup.school;
+        const struct fish *const fish = &school->fish[0];
+        struct wake *const wake = &setup.state->wake[0];
+        stretch_find_old(wake, fish, school);
+        for (int i = 0; i < 3; i++) stretch_drop(wake, fish, school);
+        const int n = wake->n_vortex;
+        BELOW(n, 70);
+        const double t = setup.state->t, tau = 0.3 * school->interval;
+        struct sheet sheet = {.n_markers = 0};
+        sheet_reserve(setup.arena, &sheet, n);
+        sheet_build(&sheet, fish, school, wake, t);
+        sheet_place(&sheet, school, wake, t, tau);
+
+        // the forms one by one
+        double q[100] = {0}, line[2][100] = {{0}}, sum = 0;
+        struct stretch_form form = {.n = 0};
+        for (int j = 0; j < wake->n_old; j++) {
+            stretch_set_form(&form, wake, school, j);
+            for (int a = 0; a < form.n; a++) {
+                for (int b = 0; b < form.n; b++) {
+                    const int i = form.first + b;
+                    const double left = k == 1 ? wake_strength_within(school, t - wake->birth[i], 0.3) : 1;
+                    q[form.first + a] += form.part[a][b] * left * wake_label(wake, i, school->interval, tau);
+                    line[0][form.first + a] += form.part[a][b] * wake->x[i];
+                    line[1][form.first + a] += form.part[a][b] * wake->y[i];
+                }
+            }
+        }
+        assert_int_equal(sheet.n_markers, wake->n_old + 2);
+        for (int i = 0; i < sheet.n_markers; i++) {
+            const double age = t - wake->birth[i];
+            const double left = k == 0 ? wake_strength_within(school, age - school->interval / 2, 0.3) : 1;
+            const double label = wake_strength_within(school, age, 0.3) * wake_label(wake, i, school->interval, tau);
+            const struct sources *const views[] = {&sheet.graded.sources, &sheet.middles.sources};
+            for (int view = 0; view < 2; view++) {
+                NEAR(views[view]->x[i], wake->x[i], 0, 0);
+                NEAR(views[view]->q[i], left * q[i], 1e-15, 1e-12);
+                if (k == 1) NEAR(views[view]->dx[i], label * line[0][i], 1e-15, 1e-12);
+                if (k == 1) NEAR(views[view]->dy[i], label * line[1][i], 1e-15, 1e-12);
+            }
+            double along[2];
+            sheet_line(&sheet, &sheet.graded, i, along);
+            NEAR_ARRAY(2, along, ((double[]){line[0][i], line[1][i]}), 1e-14, 0);
+        }
+
+        // markers as sources at markers: the same sum of circulations and moments
+        struct sources markers = {.arena = setup.arena};
+        sheet_place(&sheet, school, wake, t, 0);
+        sheet_markers(&markers, &sheet, fish, school, wake, t, 0);
+        for (int i = 0; i < sheet.middles.n_released; i++) sum += sheet.middles.sources.q[i];
+        const struct impulse_moments moments = impulse_of_wake(wake, school, t, 0);
+        double all[3] = {0};
+        for (int i = 0; i < n; i++) {
+            all[0] += markers.q[i];
+            all[1] += markers.q[i] * markers.x[i];
+            all[2] += markers.q[i] * (markers.x[i] * markers.x[i] + markers.y[i] * markers.y[i]);
+        }
+        NEAR(all[0], sum, 1e-14, 0);
+        NEAR(all[0], moments.circulation, 1e-14, 0);
+        NEAR(all[1], moments.x, 1e-13, 0);
+        NEAR(all[2], moments.square, 1e-13, 0);
+    }
+}
+
+// ---- whole runs, with and without dropping
+
+/* The largest distance of a node after a run from the run without dropping, m; *saved: part of the markers dropped. */
+static double moved_by_dropping(const char *text, double end, double *saved) {
+    double x[2][600], most = 0;
+    int n_markers[2];
+    for (int drops = 0; drops < 2; drops++) {
+        struct simulation *const simulation = school_simulation(text);
+        struct school *const school = (struct school *)simulation->school;
+        if (!drops) school->wake_spacing = 0;
+        school_run(simulation, end);
+        n_markers[drops] = 0;
+        int n = 0;
+        for (int f = 0; f < school->n_fish; f++) {
+            const struct fish *const fish = &school->fish[f];
+            for (int i = fish->at.x; i < fish->at.vx; i++) x[drops][n++] = simulation->state->y[i];
+            AT_MOST(n, 600);
+            n_markers[drops] += simulation->state->wake[f].n_vortex;
+        }
+        for (int i = 0; i < n && drops; i++) most = fmax(most, fabs(x[1][i] - x[0][i]));
+    }
+    *saved = 1 - (double)n_markers[1] / n_markers[0];
+    return most;
+}
+
+#define RUN "time: {end: 4, shedding_interval: 0.02}\nsolver: {rtol: 1.0e-6}\n"
+#define SWIM(span) "defaults: {fish: {nodes: 13, start: {speed: 0.8}, pressure: {span: " span "}}}\n"
+
+TEST(dropping_moves_bodies_by_less_than_other_errors) {
+    static const struct {
+        const char *name, *fish;
+        double end, bound[2];  // finite, infinite span
+    } cases[] = {
+        {"one fish", "fish: [{}]\n", 3, {1e-6, 1e-6}},
+        {"a follower", "fish: [{}, {start: {position: [2.5, 0.1]}}]\n", 3.5, {2e-5, 2e-5}},
+        {"in antiphase", "fish: [{}, {start: {position: [0, 0.4]}, wave: {phase: 180}}]\n", 3, {1e-5, 1e-5}},
+        {"a wall", "fluid: {walls: [-0.3]}\nfish: [{}]\n", 3, {5e-6, 5e-6}},
+    };
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+        for (int k = 0; k < 2; k++) {
+            char text[1024];
+            double saved;
+            snprintf(text, sizeof text, RUN "%s%s", k == 0 ? SWIM("finite") : SWIM("infinite"), cases[c].fish);
+            const double moved = moved_by_dropping(text, cases[c].end, &saved);
+            print_message("%s, %s span: moved %.2g m, %.0f %% of the markers dropped\n", cases[c].name,
+                          k == 0 ? "finite" : "infinite", moved, 100 * saved);
+            BELOW(moved, cases[c].bound[k]);
+            ABOVE(saved, 0.25);
+        }
+    }
+}
