@@ -247,7 +247,7 @@ static enum status page_write_bodies(const struct page *page) {
  * vortex_stride-th number are kept, so that a vortex kept in one row is kept in the next row. */
 struct wakes {
     struct rows rows;
-    int32_t *first, *count;          /* the number of the oldest over the stride, and how many  (n, n_fish) */
+    int32_t *number, *count;         /* of each place, in strides of events; of the vortices  (n_places; n, n_fish) */
     float *strength;                 /* circulation with decay, m2 s-1                          (n_places) */
     int16_t *integer;                /* the same in units of the largest over INT16_MAX         (n_places) */
     double *x, *circulation, *birth; /* of a row, as in the file */
@@ -259,7 +259,7 @@ static enum status page_write_wakes(const struct page *page) {
     const size_t n_rows = page->wakes.n;
     const size_t slots = page->n_fish * reader->length[VORTEX], most = n_rows * slots;
     struct wakes wakes = {.rows = rows_create(page, n_rows, most)};
-    NEW(page->arena, wakes.first, n_rows * page->n_fish + 1);
+    NEW(page->arena, wakes.number, most + 1);
     NEW(page->arena, wakes.count, n_rows * page->n_fish + 1);
     NEW(page->arena, wakes.strength, most + 1);
     NEW(page->arena, wakes.integer, most + 1);
@@ -283,7 +283,8 @@ static enum status page_write_wakes(const struct page *page) {
             if (!isfinite(wakes.circulation[v])) continue;
             const long number = lround(wakes.birth[v] / page->school.interval), stride = (long)page->vortex_stride;
             if (number % stride != 0) continue;
-            if (wakes.count[place]++ == 0) wakes.first[place] = (int32_t)(number / stride);
+            wakes.count[place]++;
+            wakes.number[wakes.rows.n_places + n] = (int32_t)(number / stride);
             memcpy(wakes.xy + 2 * n, wakes.x + 2 * v, 2 * sizeof *wakes.x);
             const double strength = wake_strength(&page->school, t - wakes.birth[v]);
             wakes.strength[wakes.rows.n_places + n++] = (float)(wakes.circulation[v] * strength);
@@ -294,7 +295,7 @@ static enum status page_write_wakes(const struct page *page) {
     fprintf(page->stream, "\"wakes\":{\"interval\":%.9g,", page->school.interval * (double)page->vortex_stride);
     rows_write(page, &wakes.rows);
     fputs(",\n", page->stream);
-    page_write_array(page->stream, "first", n_rows * page->n_fish * sizeof *wakes.first, wakes.first, ",\n");
+    page_write_array(page->stream, "number", wakes.rows.n_places * sizeof *wakes.number, wakes.number, ",\n");
     page_write_array(page->stream, "count", n_rows * page->n_fish * sizeof *wakes.count, wakes.count, ",\n");
 
     // circulations as integers of 16 bits

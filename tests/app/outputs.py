@@ -58,7 +58,7 @@ def unpacked(text, code):
     return struct.unpack(f"<{len(data) // size}{code}", data[: len(data) // size * size])
 
 
-CODES = {"time": "d", "box": "d", "place": "H", "first": "i", "count": "i", "strength": "h"}
+CODES = {"time": "d", "box": "d", "place": "H", "number": "i", "count": "i", "strength": "h"}
 
 
 def sums_of_page(path):

@@ -70,7 +70,7 @@ near("time", array(run["bodies"]["time"], "f8"), file["time"][:], 0)
 wakes = run["wakes"]
 with_wake = np.flatnonzero((file["wake_count"][:].sum(axis=1) == 0) | np.isfinite(file["wake_circulation"][:, 0, 0]))
 assert wakes["n"] == with_wake.size < rows, (wakes["n"], with_wake)
-first, count = (array(wakes[key], "i4").reshape(-1, 2) for key in ("first", "count"))
+number, count = array(wakes["number"], "i4"), array(wakes["count"], "i4").reshape(-1, 2)
 box, place = places(wakes, count.sum())
 strength, at = array(wakes["strength"], "i2") * wakes["unit"], 0
 assert np.abs(array(wakes["strength"], "i2")).max() == 32767, "all 16 bits"
@@ -80,7 +80,7 @@ for i, row in enumerate(with_wake):
         assert count[i, f] == n, (count[i, f], n)
         near("wake", box[i, :2] + place[at : at + n] * box[i, 2], file["wake_x"][row, f, :n], 0.5001 * box[i, 2] or 1e-12)
         birth = file["wake_birth"][row, f, :n]
-        near("births", (first[i, f] + np.arange(n)) * wakes["interval"], birth, 1e-9)
+        near("births", number[at : at + n] * wakes["interval"], birth, 1e-9)
         young = file["time"][row] - birth < 0.6  # older ones decay
         near("strength", strength[at : at + n][young], file["wake_circulation"][row, f, :n][young], 0.5001 * wakes["unit"])
         assert np.all(np.abs(strength[at : at + n]) <= np.abs(file["wake_circulation"][row, f, :n]) + wakes["unit"])
@@ -140,10 +140,12 @@ assert got.size == run["wakes"]["n"]
 assert np.array_equal(got, np.append(time[::stride], time[-1])), got
 # vortices that are left have the births of the result
 stride = int(re.search(r"vortices: one of (\d+) vortices", run["thinned"])[1])
-first, count = (np.frombuffer(base64.b64decode(run["wakes"][key]), "i4").reshape(-1, 7)[-1] for key in ("first", "count"))
+number, count = (np.frombuffer(base64.b64decode(run["wakes"][key]), "i4") for key in ("number", "count"))
+count = count.reshape(-1, 7)[-1]
 for f in range(7):
     birth = netCDF4.Dataset("long.nc")["wake_birth"][-1, f].compressed()
-    left = (first[f] + np.arange(count[f])) * run["wakes"]["interval"]
+    at = number.size - count[f:].sum()
+    left = number[at : at + count[f]] * run["wakes"]["interval"]
     kept = birth[np.round(birth / 0.1).astype(int) % stride == 0]
     assert stride > 1 and kept.size == count[f] and np.allclose(left, kept, rtol=0, atol=1e-9), left
 end
