@@ -318,8 +318,29 @@ static int find_entries(const struct run *of, struct entry *entry) {
     return n;
 }
 
+/* Print the variables that have values in some run, but no row. Returns their number. */
+static int count_missing(const struct entry *row, int n_rows, struct entry all[N_RUNS][MAX_VARIABLES],
+                         const int n[N_RUNS]) {
+    int n_missing = 0;
+    for (int r = 0; r < N_RUNS; r++) {
+        for (int i = 0; i < n[r]; i++) {
+            int is_known = !(all[r][i].size > 0);
+            for (int k = 0; k < n_rows && !is_known; k++) is_known = strcmp(row[k].name, all[r][i].name) == 0;
+            for (int k = 0; k < r && !is_known; k++) {
+                for (int j = 0; j < n[k] && !is_known; j++) {
+                    is_known = all[k][j].size > 0 && strcmp(all[k][j].name, all[r][i].name) == 0;
+                }
+            }
+            if (is_known) continue;
+            n_missing++;
+            print_error("%s %s 0 0: no row has this variable\n", all[r][i].run, all[r][i].name);
+        }
+    }
+    return n_missing;
+}
+
 /* The row of each line of the table, with its values now; prints a row that no run has. Returns the number of rows. */
-static int find_rows(struct entry want[MAX_ROWS], struct entry got[MAX_ROWS]) {
+static int find_rows(struct entry want[MAX_ROWS], struct entry got[MAX_ROWS], int *n_missing) {
     static struct entry all[N_RUNS][MAX_VARIABLES];
     int n[N_RUNS], n_rows = 0;
     for (int r = 0; r < N_RUNS; r++) n[r] = find_entries(&runs[r], all[r]);
@@ -339,13 +360,15 @@ static int find_rows(struct entry want[MAX_ROWS], struct entry got[MAX_ROWS]) {
         assert_in_range(++n_rows, 0, MAX_ROWS - 1);
     }
     fclose(file);
+    *n_missing = count_missing(want, n_rows, all, n);
     return n_rows;
 }
 
 /* The same rows with the values of now. For a new row add its first two words and two zeros to the table before. */
 static int write_table(void) {
     static struct entry want[MAX_ROWS], got[MAX_ROWS];
-    const int n = find_rows(want, got);
+    int n_missing;
+    const int n = find_rows(want, got, &n_missing);
     FILE *const file = fopen(table, "w");
     assert_non_null(file);
     fputs("# Sums over the values of a variable of short runs: tests/library/test_results.c --write\n", file);
@@ -357,9 +380,9 @@ static int write_table(void) {
 
 TEST(results_of_short_runs_stay) {
     static struct entry want[MAX_ROWS], got[MAX_ROWS];
-    const int n = find_rows(want, got);
+    int n_missing, n_wrong = 0;
+    const int n = find_rows(want, got, &n_missing);
     double worst = 0;
-    int n_wrong = 0;
     for (int i = 0; i < n; i++) {
         // multipliers and growth rates are quotients of small differences
         const int is_difference =
@@ -373,6 +396,7 @@ TEST(results_of_short_runs_stay) {
     print_message("%d values, largest relative difference %.1e\n", n, worst);
     assert_in_range(n, 12 * N_RUNS, MAX_ROWS);
     assert_int_equal(n_wrong, 0);
+    assert_int_equal(n_missing, 0);
 }
 
 // ---- every key

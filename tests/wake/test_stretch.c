@@ -284,10 +284,11 @@ static double moved_by_dropping(const char *text, double end, double *saved) {
 TEST(dropping_moves_bodies_by_less_than_other_errors) {
     static const struct {
         const char *name, *fish;
-        double end, bound[2];  // finite, infinite span
+        double end,
+            bound[2];  // finite, infinite span, m
     } cases[] = {
         {"one fish", "fish: [{}]\n", 3, {1e-6, 1e-6}},
-        {"a follower", "fish: [{}, {start: {position: [2.5, 0.1]}}]\n", 3.5, {2e-5, 2e-5}},
+        {"a follower", "fish: [{}, {start: {position: [2.5, 0.1]}}]\n", 3.5, {4e-5, 2e-5}},
         {"in antiphase", "fish: [{}, {start: {position: [0, 0.4]}, wave: {phase: 180}}]\n", 3, {1e-5, 1e-5}},
         {"a wall", "fluid: {walls: [-0.3]}\nfish: [{}]\n", 3, {5e-6, 5e-6}},
     };

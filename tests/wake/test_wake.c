@@ -170,7 +170,7 @@ TEST(without_fade_a_vortex_vanishes_within_one_interval) {
 }
 
 TEST(a_stretch_is_as_old_as_its_newer_marker) {
-    struct setup setup = setup_of(SMALL "wake: {lifetime: 0.1, decay: 0.06}\nfish: [{}]\n");
+    struct setup setup = setup_of(SMALL "wake: {lifetime: 0.1, decay: 0.06}\nfish: [{pressure: {span: infinite}}]\n");
     struct wake *wake = &setup.state->wake[0];
     wake->has_markers = 1;
     for (int i = 0; i < 5; i++) wake_release(wake, i, 0, i * i, 0.02 * i);
