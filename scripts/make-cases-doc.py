@@ -141,8 +141,8 @@ expect:
 | `ratio` | upper bound of the largest over the smallest absolute value; not met if a value is 0 or signs differ |
 | `fails` | alone or with `where`: the members fail with these words in the message, without exit code 1 |
 
-Quantities are the quantities with orders, and QUANTITIES. Only a comparison of methods has `nose_error`, `tail_error`
-and `power_error`.
+Quantities are the quantities with orders, and QUANTITIES. Only a comparison of methods has `nose_error`, `tail_error`,
+`power_error`, `evaluations_to_end` and `wall_time_to_end`.
 
 ## error
 

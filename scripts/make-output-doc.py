@@ -138,9 +138,10 @@ A refined axis adds the variables over `level` and `group` (members that differ 
 quantity Q with orders ([cases.md](cases.md)): the order of the nose is `order_nose`. `error` adds the variables over
 `key`, `stated_Q` and `bar_Q`. With `error.against` there are three quantities for each one requested: Q, `ratio_Q` (over
 that of the twin) and `change_Q` (less that of the twin), and members of the other case. `shoal compare -o FILE` writes
-one axis, which sets `solver.method`, `solver.order`, `solver.rtol` and `solver.step`, with `nose_error`, `tail_error`
-and `power_error`: member 0 is the reference, member 1 measures the error of the reference, other members with equal
-values are repeats.
+one axis, which sets `solver.method`, `solver.order`, `solver.rtol` and `solver.step`, with `nose_error`, `tail_error`,
+`power_error`, `evaluations_to_end` and `wall_time_to_end`: member 0 is the reference, member 1 measures the error of the
+reference, other members with equal values are repeats. For a member beyond the time limit `time` and the counts are those
+that it reached, and the last two are extrapolated to the end in proportion to time; `status` says so.
 """,
     "field": """
 ## The file of a field

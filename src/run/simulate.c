@@ -13,27 +13,26 @@
 #include "result/result_table.h"
 #include "solver/integrator.h"
 
-/* Set the highest order of ida. Default (doc/numerics.md, section 3): 2 if the stiffness of a body is not damped, 5 if
- * the slowest bending mode of every fish is below 0.6 of the beat frequency, else 3. */
-static void simulation_set_order(struct simulation *simulation, const struct case_values *values) {
-    const struct school *const school = simulation->school;
-    simulation->options.order = values->solver.order;
-    if (values->solver.order > 0 || values->solver.method != METHOD_IDA) return;
-
+int simulate_order(struct arena *arena, const struct case_values *values, const struct school *school) {
+    if (values->solver.order > 0) return values->solver.order;
     bool are_soft = true;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         const double periods = values->school.fish[f].body.relaxation_time * fish->frequency;
-        simulation->options.order = 2;
-        if (!(periods > 0.001 * (1 - 1e-9))) return;
+        if (!(periods > 0.001 * (1 - 1e-9))) return 2;
         if (!are_soft) continue;
 
         double *scratch;
-        NEW(simulation->arena, scratch, 6 * fish->n_nodes);
+        NEW(arena, scratch, 6 * fish->n_nodes);
         are_soft = bending_mode_frequency(fish, scratch) < 0.6 * fish->frequency;
     }
+    return are_soft ? 5 : 3;
+}
 
-    simulation->options.order = are_soft ? 5 : 3;
+static void simulation_set_order(struct simulation *simulation, const struct case_values *values) {
+    simulation->options.order = values->solver.order;
+    if (values->solver.method != METHOD_IDA) return;
+    simulation->options.order = simulate_order(simulation->arena, values, simulation->school);
 }
 
 // an empty simulation of a case

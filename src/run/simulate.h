@@ -59,6 +59,11 @@ enum status simulate_renew(struct simulation *simulation);
 /* Release the simulation with everything that the simulation owns. Accepts NULL. */
 void simulate_free(struct simulation *simulation);
 
+/* The highest order of ida for a case and its school: solver.order, or by default (doc/numerics.md, section 3) 2 if the
+ * stiffness of a body is not damped, 5 if the slowest bending mode of every fish is below 0.6 of the beat frequency,
+ * else 3. arena: for scratch. */
+int simulate_order(struct arena *arena, const struct case_values *values, const struct school *school);
+
 /* Integrate to the next event and perform the event. Fails with STATUS_SOLVER, STATUS_STOPPED, or with
  * STATUS_CONTACT (bodies in contact, contact.action: stop); the state is then between two events. */
 enum status simulate_step(struct simulation *simulation);

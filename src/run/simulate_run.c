@@ -63,6 +63,9 @@ static void run_report(const struct run *run, double t) {
                                          .end = run->values->time.end,
                                          .event = simulation->state->event,
                                          .steps = counts.steps,
+                                         .evaluations = counts.residual_evaluations,
+                                         .newton_iterations = counts.newton_iterations,
+                                         .jacobians = counts.jacobian_evaluations,
                                          .wall_time = simulate_wall_time(simulation)};
     for (int f = 0; f < simulation->school->n_fish; f++) {
         progress.n_vortices += simulation->state->wake[f].n_vortex;

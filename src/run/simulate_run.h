@@ -15,8 +15,9 @@ struct trace;
 /* Progress of a run, reported after every event, and after every 100 steps of the integrator in between. */
 struct simulate_progress {
     double t, end;
-    long event;     /* the last one */
-    long steps;     /* of the integrator, in total */
+    long event; /* the last one */
+    /* of the integrator, in total */
+    long steps, evaluations, newton_iterations, jacobians;
     int n_vortices; /* of all fish */
     double wall_time;
 };

@@ -10,6 +10,8 @@
 #include "case/case.h"
 #include "case/case_table.h"
 #include "case/sweep.h"
+#include "fish/fish_school.h"
+#include "run/simulate.h"
 #include "study/study_folder.h"
 
 enum { BY_METHOD, BY_ORDER, BY_RTOL, BY_STEP, N_KEYS };
@@ -39,7 +41,7 @@ static bool list_next_word(const char **list, char word[WORD_BYTES]) {
 }
 
 void compare_words(struct text *text) {
-    text_add(text, "ida1 to ida%d (ida with this highest order)", methods_table[METHOD_IDA].order);
+    text_add(text, "ida (with solver.order), ida1 to ida%d (with this highest order)", methods_table[METHOD_IDA].order);
     for (int i = 0; i < methods_n; i++) {
         if (i != METHOD_IDA && methods_table[i].has_adaptive_steps) text_add(text, ", %s", methods_table[i].word);
     }
@@ -59,13 +61,13 @@ static void sweep_add_member(struct text *sweep, int method, int order, const ch
 
 /* Add a method with each tolerance or step. rtol: tolerance of members with fixed steps. */
 static enum status sweep_add_method(struct text *sweep, const char *word, const struct compare_options *options,
-                                    const char *rtol) {
-    // the row of the table of methods, and the order: "ida2" is ida of order 2
+                                    const char *rtol, int ida_order) {
+    // the row of the table of methods, and the order: "ida2" is ida of order 2, "ida" that of the case
     const struct method_properties *const ida = &methods_table[METHOD_IDA];
     const size_t n = strlen(ida->word);
     int method = -1, order = 0;
-    if (strncmp(word, ida->word, n) == 0 && strlen(word) == n + 1) {
-        order = word[n] - '0';
+    if (strncmp(word, ida->word, n) == 0 && strlen(word) <= n + 1) {
+        order = word[n] == '\0' ? ida_order : word[n] - '0';
         method = order >= 1 && order <= ida->order ? METHOD_IDA : -1;
     }
     for (int i = 0; i < methods_n && method < 0; i++) {
@@ -113,12 +115,15 @@ enum status compare_create(struct arena *arena, struct case_values **study, cons
     }
 
     TRY(sweep_refuse(values));
+    struct school *school;
+    TRY(fish_school_create(arena, &school, &values->school));
+    const int ida_order = simulate_order(arena, values, school);
     struct text sweep = {.arena = arena}, rtol = {.arena = arena}, end = {.arena = arena}, standard = {.arena = arena};
     text_add_number(&rtol, values->solver.rtol);
     text_add_number(&end, values->time.end);
 
     // all methods with adaptive steps
-    text_add(&standard, "ida2,ida%d", methods_table[METHOD_IDA].order);
+    text_add(&standard, "ida,ida2,ida%d", methods_table[METHOD_IDA].order);
     for (int i = 0; i < methods_n; i++) {
         if (i != METHOD_IDA && methods_table[i].has_adaptive_steps) text_add(&standard, ",%s", methods_table[i].word);
     }
@@ -134,7 +139,9 @@ enum status compare_create(struct arena *arena, struct case_values **study, cons
     for (int repeat = 0; repeat < options->repeats; repeat++) {
         char word[WORD_BYTES];
         const char *methods = options->methods ? options->methods : standard.text;
-        while (list_next_word(&methods, word)) TRY(sweep_add_method(&sweep, word, options, rtol.text));
+        while (list_next_word(&methods, word)) {
+            TRY(sweep_add_method(&sweep, word, options, rtol.text, ida_order));
+        }
     }
     text_add(&sweep, "]}]");
 
@@ -145,15 +152,44 @@ enum status compare_create(struct arena *arena, struct case_values **study, cons
     return status_fail(STATUS_CASE, "nothing to compare: --methods, --rtol and --steps are lists");
 }
 
-// ---- errors
+// ---- errors, and the cost to the end
 
-void compare_fill_errors(const struct case_values *study, const struct member_file *members) {
+static void set_number(const struct member_file *member, const char *quantity, double value) {
+    *member_file_place(member, member_file_quantity_number(quantity), 0, 0) = value;
+}
+
+/* Set the cost of a member to the end: beyond the time limit, extrapolate from what the member has reached. */
+static void fill_cost(const struct case_values *study, const struct member_file *member) {
+    static const char *const reached[] = {
+        "time", "steps", "residual_evaluations", "newton_iterations", "jacobian_evaluations", "wall_time"};
+    enum { N_REACHED = sizeof reached / sizeof *reached };
+    double value[N_REACHED], factor = NAN;
+    const char *next = member->progress ? member->progress : "";
+    int n = 0;
+    for (char *end; n < N_REACHED; n++, next = end) {
+        value[n] = strtod(next, &end);
+        if (end == next) break;
+    }
+    for (int i = 0; n == N_REACHED && i < N_REACHED; i++) set_number(member, reached[i], value[0] > 0 ? value[i] : NAN);
+    if (n == N_REACHED && value[0] > 0) factor = study->time.end / value[0];
+    if (member_file_is_complete(member)) factor = 1;
+    set_number(member, "evaluations_to_end", factor * member_file_number(member, "residual_evaluations", 0));
+    set_number(member, "wall_time_to_end", factor * member_file_number(member, "wall_time", 0));
+}
+
+/* The factor from what a member has reached to the end: 1 for a complete one; NaN: unknown. */
+static double factor_to_end(const struct member_file *member) {
+    return member_file_number(member, "evaluations_to_end", 0) / member_file_number(member, "residual_evaluations", 0);
+}
+
+void compare_fill(const struct case_values *study, const struct member_file *members) {
     static const char *const points[] = {"nose", "tail"}, *const errors[] = {"nose_error", "tail_error"};
     if (!compare_is(study)) return;
     const int power = member_file_quantity_number("power_error");
     const struct member_file *const reference = &members[0];
     for (int m = 0; m < sweep_n_members(study); m++) {
         const struct member_file *const member = &members[m];
+        if (member->n_fish > 0) fill_cost(study, member);
         const bool are_known = member_file_is_complete(member) && member_file_is_complete(reference);
         for (int f = 0; f < member->n_fish; f++) {
             // the distance of nose and tail from the reference, in body lengths
@@ -395,6 +431,7 @@ void compare_print(struct arena *arena, const struct case_values *study, const s
 
     // a row for each setting
     struct table *const table = table_create(arena, 0);
+    bool is_extrapolated = false;
     for (size_t c = 0; c < sizeof heads / sizeof *heads; c++) table_column(table, heads[c][0], heads[c][1]);
     for (int m = COMPARE_N_REFERENCES; m < n; m++) {
         if (first_repeat(study, m) != m) continue;
@@ -405,14 +442,30 @@ void compare_print(struct arena *arena, const struct case_values *study, const s
         table_cell(table, "%s", has_step(study, m) ? "-" : set_to(study, m, BY_RTOL));
         table_cell(table, "%s", has_step(study, m) ? set_to(study, m, BY_STEP) : "-");
         for (int e = 0; e < 3; e++) table_number(table, "%.1e", largest_error(study, member, errors[e]));
-        table_number(table, "%.3f", wall_time.median);
-        table_number(table, "%.3f", wall_time.spread);
-        for (int c = 0; c < 4; c++) table_number(table, "%.0f", member_file_number(member, counts[c], 0));
-        table_number(table, "%.1f", 1e6 * wall_time.median / member_file_number(member, "residual_evaluations", 0));
+        const double factor = factor_to_end(member), wall = member_file_number(member, "wall_time_to_end", 0);
+        if (isfinite(factor) && !member_file_is_complete(member)) {
+            table_cell(table, "~%.3g", wall);
+            table_cell(table, "-");
+            for (int c = 0; c < 4; c++) {
+                const double count = factor * member_file_number(member, counts[c], 0);
+                table_cell(table, count > 0 ? "~%.3g" : "%.0f", count);
+            }
+            table_number(table, "%.1f", 1e6 * wall / (factor * member_file_number(member, counts[1], 0)));
+            is_extrapolated = true;
+        } else {
+            table_number(table, "%.3f", wall_time.median);
+            table_number(table, "%.3f", wall_time.spread);
+            for (int c = 0; c < 4; c++) table_number(table, "%.0f", member_file_number(member, counts[c], 0));
+            table_number(table, "%.1f", 1e6 * wall_time.median / member_file_number(member, counts[1], 0));
+        }
         table_cell(table, "%.*s", (int)strcspn(member->status, ":"), member->status);
         table_row(table);
     }
     table_print(table, stream);
+    if (is_extrapolated) {
+        fprintf(stream, "~: extrapolated to the end, t = %.4g s, from what was done within --limit.\n",
+                study->time.end);
+    }
     print_costs(arena, study, members, buffer, stream);
 
     // "failed: reason": the reasons follow the tables
@@ -422,6 +475,11 @@ void compare_print(struct arena *arena, const struct case_values *study, const s
         char setting[NAME_BYTES];
         name_method(study, m, method);
         name_setting(study, m, setting);
-        fprintf(stream, "%s, %s %s\n", method, setting, members[m].status);
+        fprintf(stream, "%s, %s %s", method, setting, members[m].status);
+        if (isfinite(factor_to_end(&members[m]))) {
+            fprintf(stream, ", %.0f steps and %.0f evaluations", member_file_number(&members[m], counts[0], 0),
+                    member_file_number(&members[m], counts[1], 0));
+        }
+        fprintf(stream, "\n");
     }
 }

@@ -22,7 +22,7 @@ enum { COMPARE_N_REFERENCES = 2 };
 
 struct compare_options {
     const char
-        *methods;      /* "ida2,ida5,rk4": ida with the highest order, or words of solver.method; NULL: all adaptive */
+        *methods;      /* "ida,ida5,rk4": words of solver.method, or ida with this highest order; NULL: all adaptive */
     const char *rtols; /* "1e-3,1e-5"; NULL: 1e-3 to 1e-7 */
     const char *steps; /* fixed steps of all methods but ida, instead of tolerances; NULL: none */
     int repeats;
@@ -41,12 +41,15 @@ void compare_words(struct text *text);
 /* Whether a study is a comparison. */
 bool compare_is(const struct case_values *study);
 
-/* Set nose_error, tail_error and power_error of each member of a comparison: final distance of nose and tail from the
- * reference, in body lengths, and relative error of the muscle work. Other studies are unchanged. */
-void compare_fill_errors(const struct case_values *study, const struct member_file *members);
+/* Set the quantities of a comparison for each member: nose_error and tail_error, the final distance from the reference
+ * in body lengths; power_error, the relative error of the muscle work; evaluations_to_end and wall_time_to_end. Of a
+ * member beyond the time limit, time and counts become those that it reached, and the last two are extrapolated from
+ * them in proportion to time. Other studies are unchanged. */
+void compare_fill(const struct case_values *study, const struct member_file *members);
 
 /* Print a row for each setting: largest errors over the fish, median and half range of the wall times of the repeats,
- * solver counts. Print the cost of each method at a common error, and the reasons of failed members. */
+ * solver counts, with a ~ where they are extrapolated. Print the cost of each method at a common error, and the reasons
+ * of failed members. */
 void compare_print(struct arena *arena, const struct case_values *study, const struct member_file *members,
                    FILE *stream);
 

@@ -13,9 +13,22 @@ enum { MAX_FISH = 1000000 };
 
 // ---- the table of quantities: first the last rows of variables, then computed quantities
 
-static const char *const computed[] = {"nose",       "tail",       "lateral_drift", "mean_heading",
-                                       "nose_error", "tail_error", "power_error",   "beat_time"};
-enum { NOSE, TAIL, DRIFT, MEAN_HEADING, NOSE_ERROR, TAIL_ERROR, POWER_ERROR, BEAT_TIME, N_COMPUTED };
+static const char *const computed[] = {
+    "nose",       "tail",        "lateral_drift",      "mean_heading",     "nose_error",
+    "tail_error", "power_error", "evaluations_to_end", "wall_time_to_end", "beat_time"};
+enum {
+    NOSE,
+    TAIL,
+    DRIFT,
+    MEAN_HEADING,
+    NOSE_ERROR,
+    TAIL_ERROR,
+    POWER_ERROR,
+    EVALUATIONS,
+    WALL_TIME,
+    BEAT_TIME,
+    N_COMPUTED
+};
 
 const struct member_file_quantity *member_file_quantity(int i) {
     static struct member_file_quantity all[RESULT_TABLE_MAX + N_COMPUTED];
@@ -46,7 +59,7 @@ const struct member_file_quantity *member_file_quantity(int i) {
                                                      .of_fish = from->of_fish,
                                                      .of_xy = from->of_xy,
                                                      .is_computed = true,
-                                                     .of_comparison = c >= NOSE_ERROR && c <= POWER_ERROR,
+                                                     .of_comparison = c >= NOSE_ERROR && c <= WALL_TIME,
                                                      .of_steady = c == BEAT_TIME};
         }
     }

@@ -27,8 +27,11 @@ int member_file_quantity_number(const char *name);
 
 /* Status and final values of one member. */
 struct member_file {
-    int number;            /* of the member; -1: the file belongs to no study */
-    const char *status;    /* "complete", "failed: reason", "stopped", "running", "missing"; never NULL */
+    int number;         /* of the member; -1: the file belongs to no study */
+    const char *status; /* "complete", "failed: reason", "stopped", "running", "missing"; never NULL */
+    /* of a member beyond the time limit: t [s], steps, evaluations, Newton iterations, Jacobians, wall time [s];
+     * otherwise "" or NULL */
+    const char *progress;
     const char *warnings;  /* warnings about the result, one per line, may be ""; NULL only without a result */
     const char *study;     /* merged text of the study, "" without a study */
     const char *effective; /* effective case of the member */

@@ -33,8 +33,9 @@ enum { REASON_BYTES = 2048 };
 
 /* Report of a process to the study, in shared memory. */
 struct report {
-    double part; /* completed part of the run, 0 to 1 */
-    double t;    /* s */
+    double part;                   /* completed part of the run, 0 to 1 */
+    double t;                      /* s */
+    struct simulate_progress last; /* of a run */
     char reason[REASON_BYTES];
 };
 
@@ -76,6 +77,7 @@ static void member_report_progress(const struct simulate_progress *now, void *da
     struct report *const report = data;
     report->part = now->t / now->end;
     report->t = now->t;
+    report->last = *now;
 }
 
 static void member_report_beats(const struct steady_progress *now, void *data) {
@@ -178,8 +180,11 @@ static void member_finish(struct study *study, struct job *job, int outcome) {
     study->progress.n_failed++;
     if (job->member < study->options->n_required) study->required = job;
     if (job->is_late) {
-        snprintf(job->report->reason, REASON_BYTES, "too slow: at t = %.4g s after %.3g s", job->report->t,
-                 clock_seconds(CLOCK_MONOTONIC) - job->started);
+        // the second line is for a comparison of methods
+        const struct simulate_progress *const last = &job->report->last;
+        snprintf(job->report->reason, REASON_BYTES, "too slow: at t = %.4g s after %.3g s\n%.9g %ld %ld %ld %ld %.6g",
+                 job->report->t, clock_seconds(CLOCK_MONOTONIC) - job->started, last->t, last->steps, last->evaluations,
+                 last->newton_iterations, last->jacobians, last->wall_time);
     } else if (WIFSIGNALED(outcome)) {
         snprintf(job->report->reason, REASON_BYTES, "killed by signal %d (%s)", WTERMSIG(outcome),
                  strsignal(WTERMSIG(outcome)));
@@ -310,8 +315,9 @@ static enum status plan_and_run(struct study *study) {
     study->is_masked = true;
     TRY(run_until_all_end(study));
     if (study->required) {
-        return status_fail(STATUS_SOLVER, "member %d failed: %s", study->required->member,
-                           study->required->report->reason);
+        const char *const reason = study->required->report->reason;
+        return status_fail(STATUS_SOLVER, "member %d failed: %.*s", study->required->member, (int)strcspn(reason, "\n"),
+                           reason);
     }
 
     if (!is_stopped(study)) return STATUS_OK;

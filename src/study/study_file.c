@@ -603,7 +603,7 @@ enum status study_report(const struct case_values *study, const char *folder, co
     MEMORY_BOUNDARY(STATUS_MEMORY);
     struct member_file *members;
     TRY(study_folder_read_members(arena, &members, study, folder));
-    compare_fill_errors(study, members);
+    compare_fill(study, members);
 
     // all that needs memory precedes study.nc, which is there also after a missed expectation
     struct convergence_orders orders;

@@ -116,7 +116,9 @@ enum status study_folder_read_members(struct arena *arena, struct member_file **
         close(file);
         if (length < 0) continue;
         reason[length] = '\0';
-        member->status = arena_text(arena, "failed: %.*s", (int)strcspn(reason, "\n"), reason);
+        const size_t line = strcspn(reason, "\n");
+        member->status = arena_text(arena, "failed: %.*s", (int)line, reason);
+        member->progress = reason[line] == '\n' ? arena_text(arena, "%s", reason + line + 1) : "";
     }
     return STATUS_OK;
 }

@@ -32,7 +32,8 @@ enum status study_folder_parse(struct arena *arena, struct case_values **study, 
 enum status study_folder_case(struct arena *arena, struct case_values **values, const struct case_values *study,
                               int member);
 
-/* Write the reason of a failure to the .failed file of a member; NULL: remove the file of an earlier run. */
+/* Write the reason of a failure to the .failed file of a member; NULL: remove the file of an earlier run. A second line
+ * becomes the progress of the member. */
 void study_folder_set_reason(struct arena *arena, const char *folder, int member, const char *reason);
 
 /* Read the final values of all members in the folder into the arena. An unreadable file counts as a failed member.

@@ -62,7 +62,7 @@ static void assert_has(const char *text, const char *part) {
 TEST(errors_are_distances_from_the_first_member_in_lengths) {
     struct case_values study = parse(repeated);
     struct member_file *const members = members_of(&study);
-    compare_fill_errors(&study, members);
+    compare_fill(&study, members);
     NEAR(*at(&members[0], "nose_error", 1, 0), 0, 0, 0);
     NEAR(*at(&members[4], "nose_error", 0, 0), 5 * 4 / 2.0, 0, 1e-15);
     NEAR(*at(&members[4], "nose_error", 1, 0), 5 * 4 / 0.5, 0, 1e-15);
@@ -85,6 +85,40 @@ TEST(the_wall_time_is_the_median_of_the_repeats) {
     assert_has(text, "failed\n  ida2");
     assert_has(text, "complete\nrk4, step 0.01 failed: too slow\n");
     assert_null(strstr(strstr(text, "too slow") + 1, "too slow"));
+}
+
+/* A member beyond the limit has done a quarter of 0.02 s. */
+TEST(a_run_beyond_the_limit_is_extrapolated_and_marked) {
+    struct case_values study = parse(repeated);
+    struct member_file *const members = members_of(&study);
+    for (int m = 2; m < N_MEMBERS; m += 2) {
+        members[m].status = "failed: too slow: at t = 0.005 s after 2 s";
+        members[m].progress = "0.005 30 120 0 0 1.5";
+    }
+    // what an early row of the file has, and no progress at all
+    *at(&members[2], "steps", 0, 0) = 0;
+    members[3].status = "failed: too slow: at t = 0 s after 2 s";
+    members[3].progress = "0 0 0 0 0 0";
+    compare_fill(&study, members);
+    NEAR(*at(&members[2], "time", 0, 0), 0.005, 0, 0);
+    NEAR(*at(&members[2], "steps", 0, 0), 30, 0, 0);
+    NEAR(*at(&members[2], "residual_evaluations", 0, 0), 120, 0, 0);
+    NEAR(*at(&members[2], "evaluations_to_end", 0, 0), 480, 0, 1e-12);
+    NEAR(*at(&members[2], "wall_time_to_end", 0, 0), 6, 0, 1e-12);
+    NEAR(*at(&members[5], "wall_time_to_end", 0, 0), wall_times[5], 0, 0);
+    assert_true(isnan(*at(&members[3], "wall_time_to_end", 0, 0)));
+    assert_true(isnan(*at(&members[2], "nose_error", 0, 0)));
+    const char *const text = print(&study, members);
+    assert_has(text,
+               "\n   rk4     -  0.01        -        -      -      ~6      -   ~120      ~480       0          0   "
+               "12500.0  failed\n");
+    // one of the repeats of ida has no progress
+    assert_has(text,
+               "\n  ida2  1e-3     -        -        -      -  10.500  9.500      -         -       -          -       "
+               "  -  failed\n");
+    assert_has(text, "~: extrapolated to the end, t = 0.02 s, from what was done within --limit.\n");
+    assert_has(text, "rk4, step 0.01 failed: too slow: at t = 0.005 s after 2 s, 30 steps and 120 evaluations\n");
+    assert_has(text, "ida2, rtol 1e-3 failed: too slow: at t = 0 s after 2 s\n");
 }
 
 /* Errors of 4e-5 and 4e-3 for 1000 and 100 evaluations, and of 2e-4 and 2e-2 for 800 and 80: at 1e-3 a power law gives
@@ -110,7 +144,7 @@ TEST(the_cost_at_equal_error_is_that_of_a_power_law) {
         *at(&members[m], "wall_time", 0, 0) = evaluations[m] / 100;
         *at(&members[m], "residual_evaluations", 0, 0) = evaluations[m];
     }
-    compare_fill_errors(&study, members);
+    compare_fill(&study, members);
     NEAR(*at(&members[3], "power_error", 0, 0), 4e-3, 0, 1e-9);
     NEAR(*at(&members[2], "power_error", 0, 0), 0, 0, 0);
     const char *const printed = print(&study, members);
@@ -123,7 +157,7 @@ TEST(the_cost_at_equal_error_is_that_of_a_power_law) {
     assert_has(printed, " 10000.0  complete\n");
     // at ten times the error of the reference; where all settings are below, the cheapest is the bound
     *at(&members[1], "actuation_work", 0, 0) = 5 * (1 - 3e-4);
-    compare_fill_errors(&study, members);
+    compare_fill(&study, members);
     const char *const rough = print(&study, members);
     assert_has(rough, "Cost at an error of 1e-02 in nose, tail (lengths) and power (part), known to 3.0e-04:");
     assert_has(rough, "\n  ida2       100   0    1.000      -  at most: error 4.0e-03 with rtol 1e-3\n");
@@ -131,7 +165,7 @@ TEST(the_cost_at_equal_error_is_that_of_a_power_law) {
     *at(&members[1], "actuation_work", 0, 0) = 5 * (1 - 1e-5);
     *at(&members[2], "nose", 0, 0) = 3 + 1e-3;
     *at(&members[3], "actuation_work", 0, 0) = 5 * (1 - 0.1);
-    compare_fill_errors(&study, members);
+    compare_fill(&study, members);
     assert_has(print(&study, members), "\n  ida2      1000   5   10.000  0.050  between rtol 1e-5 and rtol 1e-3\n");
 }
 
@@ -155,7 +189,7 @@ TEST(steps_of_a_kind_are_compared_and_their_spread_is_in_the_bar) {
         *at(&members[m], "wall_time", 0, 0) = wall_time[m];
         *at(&members[m], "residual_evaluations", 0, 0) = 100 * wall_time[m];
     }
-    compare_fill_errors(&study, members);
+    compare_fill(&study, members);
     const char *const printed = print(&study, members);
     // at 1e-3 a power law between 10.5 s for 4e-5 and 2.2 s for 4e-3
     char row[128];

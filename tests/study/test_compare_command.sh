@@ -53,6 +53,13 @@ refused the_file_is_not_overwritten 4 'compare.nc exists' compare case.yaml -o c
 run compare case.yaml --methods euler --rtol 1e-3 --repeats 1 -o compare.nc --force -q
 check with_force_it_is test "$code" = 0 -a ! -s err -a ! -s out
 
+
+# the default method has the order of the case
+run compare case.yaml --methods ida,ida2 --set solver.order=4 --rtol 1e-4 --repeats 1
+check ida_is_the_default_method test "$(value ida4 1e-4 14)" = complete -a "$(value ida2 1e-4 14)" = complete
+run compare case.yaml --rtol 1e-3 --repeats 1 --set time.end=0.1
+check ida_is_compared_by_default test "$(value ida2 1e-3 14)" = complete -a "$(value ida5 1e-3 14)" = complete
+
 run compare case.yaml --methods ida2,rk4,euler --steps 0.01,0.0025 --rtol 1e-4 --repeats 1
 check fixed_steps_count_their_stages test "$(value rk4 0.0025 9)" = 160
 check steps_are_for_explicit_methods_only test "$(value ida2 1e-4 14)" = complete -a "$(value ida2 0.01 14)" = ''
@@ -74,6 +81,32 @@ run compare case.yaml --set time.end=40 --set 'fish[0].body.modulus=1e8' --metho
 check what_is_too_slow_fails test "$code" = 1
 check which_may_be_the_reference has err 'the reference, member 0 failed: too slow: at t = '
 check then_nothing_else_runs test ! -s out
+
+
+# rk4 takes a million steps at this stiffness, the references some hundred
+run compare case.yaml --set time.end=2 --set 'fish[0].body.modulus=1e12' --methods ida,rk4 --rtol 1e-3 --repeats 1 \
+    --reference-rtol 1e-4 --limit 4 -o late.nc
+check a_method_beyond_the_limit_is_no_failure_of_the_comparison test "$code" = 0
+check what_it_did_is_said grep -qE \
+    '^rk4, rtol 1e-3 failed: too slow: at t = [0-9.e-]+ s after [0-9.]+ s, [1-9][0-9]* steps and [1-9][0-9]* evaluations$' out
+check its_cost_to_the_end_is_marked grep -qE '^ +rk4 +1e-3 .* ~[0-9.e+]+ +- +~[0-9.e+]+ +~[0-9.e+]+ +0 +0 .* failed$' out
+check the_mark_is_explained has out '~: extrapolated to the end, t = 2 s, from what was done within --limit.'
+cat >late.py <<'PYTHON'
+import netCDF4
+
+data = netCDF4.Dataset("late.nc")
+late = next(m for m, status in enumerate(data["status"][:]) if status.startswith("failed: too slow"))
+t = float(data["time"][late])
+assert 0 < t < 2, t
+for done, to_end in (("residual_evaluations", "evaluations_to_end"), ("wall_time", "wall_time_to_end")):
+    assert data[done][late] > 0
+    assert abs(data[to_end][late] - data[done][late] * 2 / t) < 1e-6 * data[to_end][late], (done, t)
+    assert abs(data[to_end][0] - data[done][0]) == 0
+PYTHON
+check python_reads_both /usr/bin/python3 late.py
+cp out printed
+run info late.nc
+check info_prints_it_too cmp <(sed 1,8d out) printed
 
 refused unknown_method 2 "--methods: 'adams' is unknown" compare case.yaml --methods ida2,adams
 refused tolerance_out_of_range 2 'error: --rtol -1: solver.rtol must be from 1e-14 to 0.1' compare case.yaml --rtol 1e-3,-1
