@@ -9,6 +9,7 @@
 #   test      make test
 #   c_tests   make test-c
 #   same      demo and pair differ by at most 1e-12 m after 1 s from the results of this machine's build/shoal
+#   wheel     the wheel of this machine, with its libraries inside: demo, picture, Python, in a chroot without them
 #   packages  the steps of scripts/packaging/Dockerfile, in two chroots: make deb, and a trial of the packages
 #
 # Needs root and a mirror of Debian, taken from the sources of apt; skips all platforms, with a reason, where a chroot
@@ -20,7 +21,7 @@ set -euo pipefail
 # name, release, architecture, compiler, checks
 readonly platforms='
 debian12-gcc    bookworm  amd64  gcc    demo,test,packages
-debian13-gcc    trixie    amd64  gcc    demo,test,packages
+debian13-gcc    trixie    amd64  gcc    demo,test,packages,wheel
 debian13-clang  trixie    amd64  clang  demo,test
 debian12-arm64  bookworm  arm64  gcc    demo,c_tests,same
 debian13-arm64  trixie    arm64  gcc    demo,c_tests,same'
@@ -100,6 +101,27 @@ PYTHON
     done
 }
 
+# A new chroot has Python with the packages that draw, and no library of shoal.
+check_wheel() {
+    local other=$1-wheel
+    scripts/install-deps.sh patchelf python3-pip python3-setuptools python3-wheel
+    rm -f "$work"/shoal-*.whl
+    PIP_NO_INDEX=1 /usr/bin/python3 -m pip wheel --quiet --no-build-isolation --no-deps -w "$work" . \
+        --config-settings libraries=inside
+    make_chroot "$other" "$release" "$architecture"
+    cp "$work"/shoal-*.whl cases/demo.yaml "$other/shoal/"
+    enter "$other" apt-get update -qq
+    enter "$other" apt-get install -y -qq --no-install-recommends python3-venv python3-matplotlib python3-netcdf4
+    enter "$other" 'python3 -m venv --system-site-packages /env
+        /env/bin/pip install --quiet --no-index --no-deps shoal-*.whl
+        ! ldconfig -p | grep -E "sundials|libklu"
+        /env/bin/shoal demo
+        /env/bin/shoal-plot time demo.nc time.png
+        /env/bin/python -c "import netCDF4, shoal; run = shoal.Run(\"demo.yaml\"); run.advance(0.1); print(run.time)"
+        test -s demo.png -a -s time.png'
+    [[ -n ${KEEP-} ]] || rm -rf "$other"
+}
+
 # Run the steps of a stage of the Dockerfile, shared with the Apptainer definition.
 container_stage() {  # chroot, stage
     local line
@@ -147,7 +169,7 @@ run_platform() {  # name, release, architecture, compiler, checks
     find "$root/shoal" -mindepth 1 -maxdepth 1 ! -name build -exec rm -rf {} +
     scripts/packaging/copy-sources.sh "$root/shoal"
     # demo shows that make installs the packages; without demo a failing mirror is not an error of shoal
-    [[ $checks == demo* ]] || enter "$root" timeout 1800 scripts/install-deps.sh ||
+    [[ $checks == demo* || $checks == wheel ]] || enter "$root" timeout 1800 scripts/install-deps.sh ||
         skip_all "$name: packages cannot be installed"
     [[ $compiler != clang ]] || enter "$root" scripts/install-deps.sh clang libomp-dev
 

@@ -1,6 +1,7 @@
 /* main_run.c: commands that make one result: shoal run, resume, demo and steady. */
 #include <limits.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -146,7 +147,8 @@ enum status main_demo(const struct request *request) {
     demo.verbose = !request->quiet;
     TRY(main_run(&demo));
 
-    // draw the picture
+    // draw the picture, in a wheel by the Python that it was installed for
+    const char *const wanted = getenv("SHOAL_PYTHON"), *const python = wanted ? wanted : "/usr/bin/python3";
     snprintf(script, sizeof script, "%s/scripts/plot.py", share);
     fflush(NULL);
     const pid_t child = fork();
@@ -154,13 +156,12 @@ enum status main_demo(const struct request *request) {
         // the script prints the name of the picture
         if (request->quiet && !freopen("/dev/null", "w", stdout)) _exit(127);
         // Python looks for its library beside its name
-        execl("/usr/bin/python3", "/usr/bin/python3", script, demo.output, "demo.png", (char *)NULL);
+        execl(python, python, script, demo.output, "demo.png", (char *)NULL);
         _exit(127);
     }
     int outcome = -1;
     if (child < 0 || waitpid(child, &outcome, 0) != child || outcome != 0) {
-        return status_fail(STATUS_FILE, "%s was written, but /usr/bin/python3 %s could not draw demo.png", demo.output,
-                           script);
+        return status_fail(STATUS_FILE, "%s was written, but %s %s could not draw demo.png", demo.output, python, script);
     }
 
     TRY(page_write(request->arena, "demo.nc", "demo.html", request->force));

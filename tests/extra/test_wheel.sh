@@ -37,6 +37,11 @@ check 'pip builds a wheel without network' \
 check 'a virtual environment' new_environment
 check 'pip installs the wheel' environment/bin/pip install --quiet shoal-*.whl
 check 'its module runs a case with its own library' wheel_runs
+check 'its command is the program' environment/bin/shoal demo -q
+check 'with a picture by this Python' test -s demo.png
+check 'its commands draw' environment/bin/shoal-plot time demo.nc time.png
+check 'and make movies' environment/bin/shoal-animate demo.nc demo.gif
+check 'their messages have their names' eval '! environment/bin/shoal-plot no.nc 2>err && grep -q ^shoal-plot: err'
 check 'pip removes it' environment/bin/pip uninstall --quiet --yes shoal
 check 'and nothing of it stays' test -z "$(find environment -path '*shoal*')"
 
