@@ -161,7 +161,8 @@ enum status main_demo(const struct request *request) {
     }
     int outcome = -1;
     if (child < 0 || waitpid(child, &outcome, 0) != child || outcome != 0) {
-        return status_fail(STATUS_FILE, "%s was written, but %s %s could not draw demo.png", demo.output, python, script);
+        return status_fail(STATUS_FILE, "%s was written, but %s %s could not draw demo.png", demo.output, python,
+                           script);
     }
 
     TRY(page_write(request->arena, "demo.nc", "demo.html", request->force));

@@ -11,6 +11,7 @@
 #include "fish/fish_school.h"
 #include "flow/flow_at_bodies.h"
 #include "result/result_table.h"
+#include "school/diagnostics_energy.h"
 #include "solver/integrator.h"
 
 int simulate_order(struct arena *arena, const struct case_values *values, const struct school *school) {
@@ -159,6 +160,20 @@ static enum status simulation_explain(const struct simulation *simulation, enum 
                        status_message(), name, which, school->walls.y[wall], least);
 }
 
+/* After a step: balances and closest approach, then who watches the simulation. data: struct simulation. */
+static void simulation_after_step(void *data, double t) {
+    struct simulation *const simulation = data;
+    diagnostics_step(simulation->residual, simulation->state, t, simulation->state->y);
+    if (simulation->after_step) simulation->after_step(t, simulation->after_step_data);
+}
+
+enum status simulate_interval(struct simulation *simulation, double t) {
+    const struct integrator_watch watch = {
+        .stop = simulation->stop, .trace = simulation->trace, .after = simulation_after_step, .data = simulation};
+    return integrator_advance(simulation->integrator, simulation->solver, &simulation->options, simulation->state->t, t,
+                              &watch);
+}
+
 enum status simulate_step(struct simulation *simulation) {
     const struct school *const school = simulation->school;
     const struct integrator *const integrator = simulation->integrator;
@@ -166,10 +181,7 @@ enum status simulate_step(struct simulation *simulation) {
 
     // integrate to the next event; the equations may be new
     simulation->residual->stop = simulation->stop;
-    simulation->residual->after_step = simulation->after_step;
-    simulation->residual->after_step_data = simulation->after_step_data;
-    const double next = fish_event_time(school, state->event + 1);
-    enum status status = integrator->advance(simulation->solver, next, simulation->stop, simulation->trace);
+    enum status status = simulate_interval(simulation, fish_event_time(school, state->event + 1));
 
     // contact.action: stop takes precedence over the status of the integrator
     const struct closest *const closest = state->closest;

@@ -30,7 +30,7 @@ struct simulation {
     struct integrator_counts totals;          /* up to the last event, with the size of the last step */
     const volatile sig_atomic_t *stop;        /* simulate_step stops when *stop is not 0; may be NULL */
     struct trace *trace;                      /* of the steps that ida attempts; NULL: none */
-    void (*after_step)(double t, void *data); /* as in struct residual */
+    void (*after_step)(double t, void *data); /* called after each step of the integrator, to t [s]; may be NULL */
     void *after_step_data;
     long n_events;  /* of the whole run, without the event at t = 0 */
     double started; /* wall clock, s; for a resumed run: less the wall time before the checkpoint */
@@ -63,6 +63,9 @@ void simulate_free(struct simulation *simulation);
  * stiffness of a body is not damped, 5 if the slowest bending mode of every fish is below 0.6 of the beat frequency,
  * else 3. arena: for scratch. */
 int simulate_order(struct arena *arena, const struct case_values *values, const struct school *school);
+
+/* Integrate to time t [s], the next event, without performing it. Fails with STATUS_SOLVER or STATUS_STOPPED. */
+enum status simulate_interval(struct simulation *simulation, double t);
 
 /* Integrate to the next event and perform the event. Fails with STATUS_SOLVER, STATUS_STOPPED, or with
  * STATUS_CONTACT (bodies in contact, contact.action: stop); the state is then between two events. */

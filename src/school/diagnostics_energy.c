@@ -169,7 +169,6 @@ void diagnostics_step(struct residual *residual, struct state *state, double t, 
         for (int f = 0; f < school->n_fish; f++) add_works(residual, state, f, t, y);
     }
     clearance_step(residual->school, state, t, y, residual->neighbours, residual->scratch);
-    if (residual->after_step) residual->after_step(t, residual->after_step_data);
 }
 
 void diagnostics_before_jump(struct residual *residual, struct state *state) {

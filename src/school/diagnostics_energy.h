@@ -26,7 +26,7 @@ struct diagnostics_energies diagnostics_energies(struct residual *residual, int 
 double diagnostics_energy(struct residual *residual, int f, double t, const double *y);
 
 /* After a step of the integrator to time t: add the work of the step to the energy balances, by the quadratic through
- * the powers of the last three steps, update the closest approach of two bodies, and call residual->after_step. */
+ * the powers of the last three steps, and update the closest approach of two bodies. */
 void diagnostics_step(struct residual *residual, struct state *state, double t, const double *y);
 
 /* Start the energy balances and the record of the closest approach at the first event, for a consistent state. The

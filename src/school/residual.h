@@ -101,8 +101,6 @@ struct residual {
     double *scratch;                   /* scratch of diagnostics; fish f uses the slices of fish f     (n_unknowns) */
     const volatile sig_atomic_t *stop; /* once *stop is not 0, residual_jacobian and initial_conditions_solve fail with
                                           STATUS_STOPPED; may be NULL */
-    void (*after_step)(double t, void *data); /* called after each step of the integrator, to t [s]; may be NULL */
-    void *after_step_data;
 };
 
 /* Scratch of the derivatives: through the flow, large enough for any pair of fish; of the law of motion by the rate of

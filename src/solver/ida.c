@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "body/rod.h"
-#include "school/diagnostics_energy.h"
 #include "school/residual.h"
 #include "solver/ida_newton.h"
 #include "solver/integrator.h"
@@ -43,6 +42,8 @@ struct ida {
     struct integrator_options options;
     struct jacobian *jacobian;
     const volatile sig_atomic_t *stop; /* see integrator.h */
+    double reached;                    /* time of the state, s */
+    long steps;                        /* since the last event */
     enum status failure;               /* of the last callback */
     /* absolute tolerance, one over it, and kind of each unknown                                  (n_unknowns) */
     double *tolerance, *weight, *kind;
@@ -267,7 +268,6 @@ static const struct {
     int code;
     const char *text;
 } reasons[] = {
-    {IDA_TOO_MUCH_WORK, "more steps between two events than solver.max_steps: raise it, or solver.rtol"},
     {IDA_TOO_MUCH_ACC, "the tolerance is below rounding errors: raise solver.rtol"},
     {IDA_ERR_FAIL, "the error test failed too often, or with the minimum step: lower solver.rtol"},
     {IDA_CONV_FAIL,
@@ -279,7 +279,30 @@ static const struct {
      "is physical"},
 };
 
-static enum status ida_failed(const struct ida *solver, int code, long steps) {
+enum { ERROR_LENGTH = 256 };
+
+// the unknown with the largest estimated error, in units of its tolerance; empty for an error without an estimate
+static void ida_largest_error(const struct ida *solver, char error[ERROR_LENGTH]) {
+    const struct school *const school = solver->residual->school;
+    *error = '\0';
+    if (IDAGetEstLocalErrors(solver->ida, solver->scratch[0]) != 0) return;
+    const double *const estimate = N_VGetArrayPointer(solver->scratch[0]);
+    double largest = -1;
+    int worst = 0;
+    for (int i = 0; i < school->n_unknowns; i++) {
+        const double weighted = fabs(estimate[i]) / solver->tolerance[i];
+        if (weighted <= largest) continue;
+        largest = weighted;
+        worst = i;
+    }
+    if (!(largest > 0)) return;
+    const struct unknown_place place = residual_place(school, worst);
+    const int length = snprintf(error, ERROR_LENGTH, "; largest error: %s[%d] of fish %.80s", place.name, place.index,
+                                school->fish[place.fish].name);
+    if (largest > 0.01) snprintf(error + length, ERROR_LENGTH - (size_t)length, ", %.3g tolerances", largest);
+}
+
+static enum status ida_failed(const struct ida *solver, int code) {
     const struct school *school = solver->residual->school;
     const double *const y = N_VGetArrayPointer(solver->y);
     double now = 0, step = 0;
@@ -290,29 +313,11 @@ static enum status ida_failed(const struct ida *solver, int code, long steps) {
         if (reasons[i].code == code) reason = reasons[i].text;
     }
 
-    // the limit of steps is not IDA's, so IDA has no message
-    char message[512] = "", error[256] = "", last[64] = "", seen[256] = "";
-    if (code != IDA_TOO_MUCH_WORK) snprintf(message, sizeof message, "; %s", status_message());
-    if (steps > 0) snprintf(last, sizeof last, ", the last of %.3g s", step);
+    char message[512], error[ERROR_LENGTH], last[64] = "", seen[256] = "";
+    snprintf(message, sizeof message, "; %s", status_message());
+    if (solver->steps > 0) snprintf(last, sizeof last, ", the last of %.3g s", step);
 
-    // the unknown with the largest estimated error, in units of its tolerance; omit an error without an estimate
-    double largest = -1;
-    int worst = 0;
-    if (IDAGetEstLocalErrors(solver->ida, solver->scratch[0]) == 0) {
-        const double *const estimate = N_VGetArrayPointer(solver->scratch[0]);
-        for (int i = 0; i < school->n_unknowns; i++) {
-            const double weighted = fabs(estimate[i]) / solver->tolerance[i];
-            if (weighted <= largest) continue;
-            largest = weighted;
-            worst = i;
-        }
-    }
-    if (largest > 0) {
-        const struct unknown_place place = residual_place(school, worst);
-        const int length = snprintf(error, sizeof error, "; largest error: %s[%d] of fish %.80s", place.name,
-                                    place.index, school->fish[place.fish].name);
-        if (largest > 0.01) snprintf(error + length, sizeof error - (size_t)length, ", %.3g tolerances", largest);
-    }
+    ida_largest_error(solver, error);
 
     // an edge that forces have compressed to almost zero length: the elastic force of a rod is finite at length zero
     for (int f = 0; f < school->n_fish && !*seen; f++) {
@@ -337,41 +342,60 @@ static enum status ida_failed(const struct ida *solver, int code, long steps) {
     return status_fail(STATUS_SOLVER,
                        "integration failed at t = %.10g s: %s%s%s; tried: orders up to %d, %ld steps since the last "
                        "event%s%s",
-                       now, reason, seen, error, solver->options.order, steps, last, message);
+                       now, reason, seen, error, solver->options.order, solver->steps, last, message);
 }
 
-static enum status ida_advance(void *data, double t, const volatile sig_atomic_t *stop, struct trace *trace) {
-    struct ida *const solver = data;
-    struct state *const state = solver->state;
-    double reached = state->t, step = 0;
-    long total = 0;
-    solver->stop = stop;
-    solver->trace = trace;
-    for (long steps = 0; reached < t; steps++) {
-        if (steps == solver->options.max_steps) return ida_failed(solver, IDA_TOO_MUCH_WORK, steps);
+static enum status ida_limited(void *data) {
+    const struct ida *const solver = data;
+    char error[ERROR_LENGTH];
+    double now = 0;
+    IDAGetCurrentTime(solver->ida, &now);
+    ida_largest_error(solver, error);
+    return integrator_limited(&solver->options, now, error);
+}
 
-        // The latest end of the step: equal parts of the rest of the interval. Steps then keep their size from event to
-        // event, and so does the Jacobian. Before the first step there is no step size; rounding is smaller than the
-        // difference from the end that IDA ignores.
-        IDAGetNumSteps(solver->ida, &total);
-        IDAGetCurrentStep(solver->ida, &step);
-        const double rounding = 1e-14 * t, n_steps = total > 0 ? ceil((t - reached - rounding) / step) : 1;
-        const double end = n_steps > 1 ? reached + (t - reached) / n_steps : t;
-        if (IDASetStopTime(solver->ida, end)) return ida_failed(solver, IDA_ILL_INPUT, steps);
-        solver->failure = STATUS_OK;
-        const int code = IDASolve(solver->ida, t, &reached, solver->y, solver->yp, IDA_ONE_STEP);
-        if (solver->failure == STATUS_STOPPED) return STATUS_STOPPED;
-        ida_trace_result(solver, code >= 0);
-        if (code < 0) return ida_failed(solver, code, steps);
-        if (code == IDA_TSTOP_RETURN) reached = end;
-        int order;
-        IDAGetLastOrder(solver->ida, &order);
-        solver->steps_of_order[order - 1]++;
-        integrator_rates_step(solver->algebraic_rates, reached, state);
-        diagnostics_step(solver->residual, state, reached, state->y);
-    }
+static enum status ida_begin(void *data, double t, const struct integrator_watch *watch) {
+    (void)t;
+    struct ida *const solver = data;
+    solver->stop = watch->stop;
+    solver->trace = watch->trace;
+    solver->reached = solver->state->t;
+    solver->steps = 0;
     return STATUS_OK;
 }
 
-const struct integrator ida_integrator = {
-    .create = ida_create, .advance = ida_advance, .restart = ida_restart, .count = ida_count};
+static enum status ida_step(void *data, double t, double *reached) {
+    struct ida *const solver = data;
+    double step = 0;
+    long total = 0;
+
+    // The latest end of the step: equal parts of the rest of the interval. Steps then keep their size from event to
+    // event, and so does the Jacobian. Before the first step there is no step size; rounding is smaller than the
+    // difference from the end that IDA ignores.
+    IDAGetNumSteps(solver->ida, &total);
+    IDAGetCurrentStep(solver->ida, &step);
+    const double left = t - solver->reached, rounding = 1e-14 * t;
+    const double n_steps = total > 0 ? ceil((left - rounding) / step) : 1;
+    const double end = n_steps > 1 ? solver->reached + left / n_steps : t;
+    if (IDASetStopTime(solver->ida, end)) return ida_failed(solver, IDA_ILL_INPUT);
+    solver->failure = STATUS_OK;
+    const int code = IDASolve(solver->ida, t, &solver->reached, solver->y, solver->yp, IDA_ONE_STEP);
+    if (solver->failure == STATUS_STOPPED) return STATUS_STOPPED;
+    ida_trace_result(solver, code >= 0);
+    if (code < 0) return ida_failed(solver, code);
+    if (code == IDA_TSTOP_RETURN) solver->reached = end;
+    solver->steps++;
+    int order;
+    IDAGetLastOrder(solver->ida, &order);
+    solver->steps_of_order[order - 1]++;
+    integrator_rates_step(solver->algebraic_rates, solver->reached, solver->state);
+    *reached = solver->reached;
+    return STATUS_OK;
+}
+
+const struct integrator ida_integrator = {.create = ida_create,
+                                          .begin = ida_begin,
+                                          .step = ida_step,
+                                          .limited = ida_limited,
+                                          .restart = ida_restart,
+                                          .count = ida_count};

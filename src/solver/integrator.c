@@ -1,10 +1,38 @@
-/* integrator.c: totals of the linear solver; rates of the bound strengths by divided differences of the last three
- * steps. */
+/* integrator.c: the loop over the steps; totals of the linear solver; rates of the bound strengths by divided
+ * differences of the last three steps. */
 #include "solver/integrator.h"
 
 #include <string.h>
 
 #include "solver/linear.h"
+
+enum status integrator_limited(const struct integrator_options *options, double t, const char *more) {
+    return status_fail(STATUS_SOLVER,
+                       "limited by solver.max_steps at t = %.10g s: more than %d steps from one event to the next%s; "
+                       "increase solver.max_steps or %s%s",
+                       t, options->max_steps, more, options->step > 0 ? "solver.step" : "solver.rtol",
+                       options->method == METHOD_IDA ? "" : ", or choose solver.method: ida");
+}
+
+enum status integrator_advance(const struct integrator *integrator, void *solver,
+                               const struct integrator_options *options, double start, double t,
+                               const struct integrator_watch *watch) {
+    // a method of fixed step needs no attempt to find that the steps are too many
+    double reached = start;
+    if (options->step > 0 && (t - start) / options->step > options->max_steps + 0.5) {
+        return integrator_limited(options, start, "");
+    }
+
+    TRY(integrator->begin(solver, t, watch));
+    for (long n = 0; reached < t; n++) {
+        if (n == options->max_steps) {
+            return integrator->limited ? integrator->limited(solver) : integrator_limited(options, reached, "");
+        }
+        TRY(integrator->step(solver, t, &reached));
+        if (watch->after) watch->after(watch->data, reached);
+    }
+    return STATUS_OK;
+}
 
 void integrator_count_linear(struct integrator_counts *counts, const struct integrator_counts *before,
                              const struct linear_counts *linear) {

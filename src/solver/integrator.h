@@ -38,17 +38,30 @@ struct integrator_options {
     struct integrator_counts before;
 };
 
+/* What a caller wants to know of the steps. */
+struct integrator_watch {
+    const volatile sig_atomic_t *stop;   /* the integration stops when *stop is not 0; may be NULL */
+    struct trace *trace;                 /* gets a line for each step that ida attempts; NULL: none */
+    void (*after)(void *data, double t); /* called after each step, to t [s], with the state there; may be NULL */
+    void *data;
+};
+
 /* A family of methods. A solver advances y and yp of a state in place, and reads the wakes through the residual. */
 struct integrator {
     /* Create a solver for the present state, which must be consistent. Fails with STATUS_SOLVER. */
     enum status (*create)(struct arena *arena, void **solver, struct residual *residual, struct state *state,
                           const struct integrator_options *options);
 
-    /* Integrate to time t [s], the next event, and update the energy balance after every step. Calls status_ask
-     * before each step and each iteration. Fails with STATUS_SOLVER and a message with time and cause, or with
-     * STATUS_STOPPED at any time between the two events; never with STATUS_RETRY. trace: gets a line for each step that
-     * ida attempts; NULL: none. */
-    enum status (*advance)(void *solver, double t, const volatile sig_atomic_t *stop, struct trace *trace);
+    /* Prepare the steps from the present event to time t [s], the next one. Fails with STATUS_SOLVER. */
+    enum status (*begin)(void *solver, double t, const struct integrator_watch *watch);
+
+    /* Take one step towards t, and set *reached to its end, t exactly for the last step. Calls status_ask before the
+     * step and each iteration. Fails with STATUS_SOLVER and a message with time and cause, or with STATUS_STOPPED;
+     * never with STATUS_RETRY. */
+    enum status (*step)(void *solver, double t, double *reached);
+
+    /* Fail because of solver.max_steps, with what the solver knows of the cause; NULL: nothing more is known. */
+    enum status (*limited)(void *solver);
 
     /* Discard the history after a jump of the state, which must be consistent; NULL without a history. Fails with
      * STATUS_SOLVER. */
@@ -90,6 +103,15 @@ extern const struct integrator one_step_integrator;
  * Sheets and wakes exert no force here; one solution at the end of each interval serves the output. A step above the
  * stability limit is STATUS_SOLVER. Tested by tests/solver/test_one_step.c. */
 extern const struct integrator one_step_verlet;
+
+/* Integrate from the event at `start` to the next one at t [s]: the only loop over the steps of a method. After each
+ * step watch->after is called. Fails as begin and step, and with STATUS_SOLVER where solver.max_steps are too few. */
+enum status integrator_advance(const struct integrator *integrator, void *solver,
+                               const struct integrator_options *options, double start, double t,
+                               const struct integrator_watch *watch);
+
+/* Fail at t [s] because of solver.max_steps. more: further words, "; ..." or empty. */
+enum status integrator_limited(const struct integrator_options *options, double t, const char *more);
 
 /* The integrator of a method. */
 static inline const struct integrator *integrator_of(enum method method) {

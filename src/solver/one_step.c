@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "base/mathematics.h"
-#include "school/diagnostics_energy.h"
 #include "school/residual.h"
 #include "solver/integrator.h"
 #include "solver/linear.h"
@@ -20,6 +19,23 @@ static const double slow_rate = 0.3;
 
 enum { MAX_ITERATIONS = 12 };
 
+/* Equal steps from one event to the next. */
+struct steps {
+    double start, h; /* s */
+    long i, n;       /* steps done, of all */
+};
+
+static void steps_begin(struct steps *steps, double start, double interval, double step) {
+    const long n = lround(interval / step);
+    *steps = (struct steps){.start = start, .h = interval / (double)n, .n = n};
+}
+
+// the end of the next step: the last one ends at the event t
+static double steps_next(struct steps *steps, double t) {
+    steps->i++;
+    return steps->i < steps->n ? steps->start + (double)steps->i * steps->h : t;
+}
+
 struct one_step {
     struct residual *residual;
     struct state *state;
@@ -27,14 +43,15 @@ struct one_step {
     struct jacobian *jacobian;
     struct linear *linear;
     const volatile sig_atomic_t *stop; /* see integrator.h */
-    unsigned pattern;                  /* of the residual, when the Jacobian was evaluated */
-    double cj;                         /* of the factorised Jacobian; 0: there is none */
-    double *kind, *tolerance;          /* kind and absolute tolerance of each unknown     (n_unknowns) */
-    double *before, *rates;            /* unknowns and rates at the start of the step     (n_unknowns) */
-    double *correction, *right_hand;   /* Newton's                                        (n_unknowns) */
-    double *older;                     /* imex: unknowns one step before `before`         (n_unknowns) */
-    double *forces[2], *given;         /* imex, rows ax, ay: R_n, R_n-1, extrapolated R, N (n_unknowns) */
-    int n_known;                       /* imex: how many of R_n, R_n-1 are known */
+    struct steps steps;
+    unsigned pattern;                /* of the residual, when the Jacobian was evaluated */
+    double cj;                       /* of the factorised Jacobian; 0: there is none */
+    double *kind, *tolerance;        /* kind and absolute tolerance of each unknown     (n_unknowns) */
+    double *before, *rates;          /* unknowns and rates at the start of the step     (n_unknowns) */
+    double *correction, *right_hand; /* Newton's                                        (n_unknowns) */
+    double *older;                   /* imex: unknowns one step before `before`         (n_unknowns) */
+    double *forces[2], *given;       /* imex, rows ax, ay: R_n, R_n-1, extrapolated R, N (n_unknowns) */
+    int n_known;                     /* imex: how many of R_n, R_n-1 are known */
     struct integrator_rates *algebraic_rates;
     struct integrator_counts counts;
 };
@@ -171,66 +188,65 @@ static enum status one_step_iterate(struct one_step *solver, const struct residu
     return STATUS_RETRY;
 }
 
-static enum status one_step_advance(void *data, double t, const volatile sig_atomic_t *stop, struct trace *trace) {
-    (void)trace;
+static enum status one_step_begin(void *data, double t, const struct integrator_watch *watch) {
     struct one_step *const solver = data;
-    struct state *const state = solver->state;
-    const double start = state->t, interval = t - start;
-    const long n = lround(interval / solver->options.step);
-    solver->stop = stop;
-    if (n > solver->options.max_steps) {
-        return status_fail(STATUS_SOLVER,
-                           "integration failed at t = %.10g s: %ld steps between two events are more than "
-                           "solver.max_steps: raise it, or solver.step",
-                           start, n);
-    }
-
-    const double h = solver->residual->school->interval / (double)n;
-    const size_t size = (size_t)solver->residual->school->n_unknowns * sizeof *state->y;
-    const bool is_split = solver->options.method == METHOD_IMEX;
-    for (long i = 1; i <= n; i++) {
-        const double end = i < n ? start + (double)i * h : t;
-        const enum status extrapolated = is_split ? one_step_extrapolate(solver, end - h) : STATUS_OK;
-        if (extrapolated > 0) {
-            return status_fail(STATUS_SOLVER, "integration failed at t = %.10g s: %s", end - h, status_message());
-        }
-        TRY(extrapolated);
-        memcpy(solver->before, state->y, size);
-        memcpy(solver->rates, state->yp, size);
-
-        // the second attempt has a new Jacobian
-        const struct residual_mode mode = {.forces = is_split ? solver->given : NULL};
-        for (size_t k = 0; solver->n_known == 2 && k < size / sizeof *state->y; k++) {
-            state->y[k] += solver->before[k] - solver->older[k];
-        }
-        enum status status = one_step_iterate(solver, &mode, end, h);
-        if (status > 0) {
-            solver->cj = 0;
-            memcpy(state->y, solver->before, size);
-            status = one_step_iterate(solver, &mode, end, h);
-        }
-        if (status > 0) {
-            return status_fail(STATUS_SOLVER,
-                               "integration failed at t = %.10g s: Newton's iteration did not converge with steps of "
-                               "%.3g s: choose a smaller solver.step, or solver.method: ida",
-                               end - h, solver->options.step);
-        }
-        TRY(status);
-        one_step_rates(solver, h);
-        solver->counts.steps++;
-        solver->counts.steps_of_order[solver->counts.order - 1]++;
-        integrator_rates_step(solver->algebraic_rates, end, state);
-        diagnostics_step(solver->residual, state, end, state->y);
-    }
+    solver->stop = watch->stop;
+    (void)t;
+    steps_begin(&solver->steps, solver->state->t, solver->residual->school->interval, solver->options.step);
     return STATUS_OK;
 }
 
-const struct integrator one_step_integrator = {
-    .create = one_step_create, .advance = one_step_advance, .restart = one_step_restart, .count = one_step_count};
+static enum status one_step_step(void *data, double t, double *reached) {
+    struct one_step *const solver = data;
+    struct state *const state = solver->state;
+    const double h = solver->steps.h, end = steps_next(&solver->steps, t);
+    const size_t size = (size_t)solver->residual->school->n_unknowns * sizeof *state->y;
+    const bool is_split = solver->options.method == METHOD_IMEX;
+    const enum status extrapolated = is_split ? one_step_extrapolate(solver, end - h) : STATUS_OK;
+    if (extrapolated > 0) {
+        return status_fail(STATUS_SOLVER, "integration failed at t = %.10g s: %s", end - h, status_message());
+    }
+    TRY(extrapolated);
+    memcpy(solver->before, state->y, size);
+    memcpy(solver->rates, state->yp, size);
+
+    // the second attempt has a new Jacobian
+    const struct residual_mode mode = {.forces = is_split ? solver->given : NULL};
+    for (size_t k = 0; solver->n_known == 2 && k < size / sizeof *state->y; k++) {
+        state->y[k] += solver->before[k] - solver->older[k];
+    }
+    enum status status = one_step_iterate(solver, &mode, end, h);
+    if (status > 0) {
+        solver->cj = 0;
+        memcpy(state->y, solver->before, size);
+        status = one_step_iterate(solver, &mode, end, h);
+    }
+    if (status > 0) {
+        return status_fail(STATUS_SOLVER,
+                           "integration failed at t = %.10g s: Newton's iteration did not converge with steps of "
+                           "%.3g s: choose a smaller solver.step, or solver.method: ida",
+                           end - h, solver->options.step);
+    }
+    TRY(status);
+    one_step_rates(solver, h);
+    solver->counts.steps++;
+    solver->counts.steps_of_order[solver->counts.order - 1]++;
+    integrator_rates_step(solver->algebraic_rates, end, state);
+    *reached = end;
+    return STATUS_OK;
+}
+
+const struct integrator one_step_integrator = {.create = one_step_create,
+                                               .begin = one_step_begin,
+                                               .step = one_step_step,
+                                               .restart = one_step_restart,
+                                               .count = one_step_count};
 
 // ---- kick, drift, kick
 
 struct verlet {
+    struct steps steps;
+    const volatile sig_atomic_t *stop; /* see integrator.h */
     struct residual *residual;
     struct state *state;
     struct integrator_options options;
@@ -265,61 +281,58 @@ static enum status verlet_unstable(const struct verlet *solver, double t) {
         t, solver->options.step);
 }
 
-static enum status verlet_advance(void *data, double t, const volatile sig_atomic_t *stop, struct trace *trace) {
-    (void)trace;
+static enum status verlet_begin(void *data, double t, const struct integrator_watch *watch) {
+    struct verlet *const solver = data;
+    solver->stop = watch->stop;
+    (void)t;
+    steps_begin(&solver->steps, solver->state->t, solver->residual->school->interval, solver->options.step);
+    return STATUS_OK;
+}
+
+static enum status verlet_step(void *data, double t, double *reached) {
     struct verlet *const solver = data;
     struct residual *const residual = solver->residual;
     struct state *const state = solver->state;
     const struct school *school = residual->school;
     double *const y = state->y, *const value = residual->scratch;
-    const double start = state->t;
-    const long n = lround(school->interval / solver->options.step);
-    const double h = school->interval / (double)n;
-    if (n > solver->options.max_steps) {
-        return status_fail(STATUS_SOLVER,
-                           "integration failed at t = %.10g s: %ld steps between two events are more than "
-                           "solver.max_steps: raise it, or solver.step",
-                           start, n);
-    }
-    for (long i = 1; i <= n; i++) {
-        TRY(status_ask(stop));
-        const double now = i < n ? start + (double)i * h : t;
+    TRY(status_ask(solver->stop));
+    const double h = solver->steps.h, now = steps_next(&solver->steps, t);
 
-        // half a kick, and the drift
-        for (int f = 0; f < school->n_fish; f++) {
-            const struct layout *const at = &school->fish[f].at;
-            for (int k = 0; k < 2 * school->fish[f].n_nodes; k++) {
-                y[at->vx + k] += h / 2 * y[at->ax + k];
-                y[at->x + k] += h * y[at->vx + k];
-            }
+    // half a kick, and the drift
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct layout *const at = &school->fish[f].at;
+        for (int k = 0; k < 2 * school->fish[f].n_nodes; k++) {
+            y[at->vx + k] += h / 2 * y[at->ax + k];
+            y[at->x + k] += h * y[at->vx + k];
         }
-        enum status status = contact_find(residual->contact, state, now, y);
-        if (status > 0) return verlet_unstable(solver, now);
-        TRY(status);
-
-        // the accelerations, and the other half of the kick; without acceleration the balance is minus the forces
-        for (int f = 0; f < school->n_fish; f++) {
-            const struct fish *const fish = &school->fish[f];
-            const struct layout *const at = &fish->at;
-            residual_actuate(residual, f, now, y);
-            memset(y + at->ax, 0, 2 * (size_t)fish->n_nodes * sizeof *y);
-            residual_balance(residual, f, y, value);
-            for (int k = 0; k < 2 * fish->n_nodes; k++) {
-                y[at->ax + k] = -value[at->ax + k] / fish->mass[k % fish->n_nodes];
-                y[at->vx + k] += h / 2 * y[at->ax + k];
-            }
-        }
-        solver->counts.steps++;
-        solver->counts.steps_of_order[solver->counts.order - 1]++;
-        solver->counts.residual_evaluations++;
-
-        // at the event also the sheets and the rates of the differential unknowns
-        status = i == n ? ode_rhs_rates(solver->rhs, t, y, state->yp) : STATUS_OK;
-        if (status > 0) return verlet_unstable(solver, t);
-        TRY(status);
-        diagnostics_step(residual, state, now, y);
     }
+    enum status status = contact_find(residual->contact, state, now, y);
+    if (status > 0) return verlet_unstable(solver, now);
+    TRY(status);
+
+    // the accelerations, and the other half of the kick; without acceleration the balance is minus the forces
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        const struct layout *const at = &fish->at;
+        residual_actuate(residual, f, now, y);
+        memset(y + at->ax, 0, 2 * (size_t)fish->n_nodes * sizeof *y);
+        residual_balance(residual, f, y, value);
+        for (int k = 0; k < 2 * fish->n_nodes; k++) {
+            y[at->ax + k] = -value[at->ax + k] / fish->mass[k % fish->n_nodes];
+            y[at->vx + k] += h / 2 * y[at->ax + k];
+        }
+    }
+    solver->counts.steps++;
+    solver->counts.steps_of_order[solver->counts.order - 1]++;
+    solver->counts.residual_evaluations++;
+
+    // at the event also the sheets and the rates of the differential unknowns
+    status = solver->steps.i == solver->steps.n ? ode_rhs_rates(solver->rhs, t, y, state->yp) : STATUS_OK;
+    if (status > 0) return verlet_unstable(solver, t);
+    TRY(status);
+    *reached = now;
     return STATUS_OK;
 }
 
-const struct integrator one_step_verlet = {.create = verlet_create, .advance = verlet_advance, .count = verlet_count};
+const struct integrator one_step_verlet = {
+    .create = verlet_create, .begin = verlet_begin, .step = verlet_step, .count = verlet_count};

@@ -3,7 +3,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "school/diagnostics_energy.h"
 #include "solver/integrator.h"
 #include "solver/ode_rhs.h"
 #include "solver/sundials.h"
@@ -193,46 +192,42 @@ static enum status unstable(const struct runge_kutta *solver, double t, const ch
                        solver->options.step > 0 ? ", or a smaller solver.step" : "", control);
 }
 
-static enum status runge_kutta_advance(void *data, double t, const volatile sig_atomic_t *stop, struct trace *trace) {
-    (void)trace;
+static enum status runge_kutta_begin(void *data, double t, const struct integrator_watch *watch) {
+    (void)t;
     struct runge_kutta *const solver = data;
-    struct state *const state = solver->state;
-    const size_t size = (size_t)solver->residual->school->n_unknowns * sizeof *state->y;
-    double reached = state->t;
-    solver->stop = stop;
+    solver->stop = watch->stop;
 
     // the event has changed the rates, which a method whose last stage is the next first one would take from before
-    if (ARKodeReset(solver->arkode, state->t, solver->y)) {
+    if (ARKodeReset(solver->arkode, solver->state->t, solver->y)) {
         return status_fail(STATUS_SOLVER, "ARKODE: %s", status_message());
-    }
-    for (long steps = 0; reached < t; steps++) {
-        if (steps == solver->options.max_steps) {
-            return status_fail(STATUS_SOLVER,
-                               "limited by solver.max_steps at t = %.10g s: %ld steps since the last event; increase "
-                               "solver.max_steps or solver.rtol, or choose solver.method: ida",
-                               reached, steps);
-        }
-        if (ARKodeSetStopTime(solver->arkode, t)) return status_fail(STATUS_SOLVER, "ARKODE: %s", status_message());
-        solver->failure = STATUS_OK;
-        status_clear();
-        const int code = ARKodeEvolve(solver->arkode, t, solver->y, &reached, ARK_ONE_STEP);
-        if (solver->failure == STATUS_STOPPED) return STATUS_STOPPED;
-        if (code < 0) return unstable(solver, reached, status_message());
-        if (code == ARK_TSTOP_RETURN) reached = t;
-
-        // the algebraic unknowns and all rates at the end of the step, for the energy balance and the event
-        const enum status status = runge_kutta_evaluate(solver, reached, state->y);
-        if (status > 0) return unstable(solver, reached, status_message());
-        TRY(status);
-        memcpy(state->yp, solver->rates, size);
-        memcpy(state->y, solver->work, size);
-        integrator_rates_step(solver->algebraic_rates, reached, state);
-        diagnostics_step(solver->residual, state, reached, state->y);
     }
     return STATUS_OK;
 }
 
+static enum status runge_kutta_step(void *data, double t, double *reached) {
+    struct runge_kutta *const solver = data;
+    struct state *const state = solver->state;
+    const size_t size = (size_t)solver->residual->school->n_unknowns * sizeof *state->y;
+    if (ARKodeSetStopTime(solver->arkode, t)) return status_fail(STATUS_SOLVER, "ARKODE: %s", status_message());
+    solver->failure = STATUS_OK;
+    status_clear();
+    const int code = ARKodeEvolve(solver->arkode, t, solver->y, reached, ARK_ONE_STEP);
+    if (solver->failure == STATUS_STOPPED) return STATUS_STOPPED;
+    if (code < 0) return unstable(solver, *reached, status_message());
+    if (code == ARK_TSTOP_RETURN) *reached = t;
+
+    // the algebraic unknowns and all rates at the end of the step, for the energy balance and the event
+    const enum status status = runge_kutta_evaluate(solver, *reached, state->y);
+    if (status > 0) return unstable(solver, *reached, status_message());
+    TRY(status);
+    memcpy(state->yp, solver->rates, size);
+    memcpy(state->y, solver->work, size);
+    integrator_rates_step(solver->algebraic_rates, *reached, state);
+    return STATUS_OK;
+}
+
 const struct integrator runge_kutta_integrator = {.create = runge_kutta_create,
-                                                  .advance = runge_kutta_advance,
+                                                  .begin = runge_kutta_begin,
+                                                  .step = runge_kutta_step,
                                                   .restart = runge_kutta_restart,
                                                   .count = runge_kutta_count};

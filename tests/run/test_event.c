@@ -93,7 +93,7 @@ static void fields_are_continuous(const char *wake) {
         SMALL "wake: {shedding: continuous, %s}\nfish: [{}, {start: {position: [0.2, 0.5]}}]\n", wake);
     school_run(simulation, 0.5);
     const double next = simulation->state->t + 0.02;
-    school_ok(simulation->integrator->advance(simulation->solver, next, NULL, NULL));
+    school_ok(simulate_interval(simulation, next));
     struct residual *residual = simulation->residual;
     const int n = simulation->school->n_unknowns, n_points = residual->flow->n_points;
     double before[400], u[200], v[200];
@@ -172,7 +172,7 @@ TEST(impulses_conserve_circulation_and_meet_kutta) {
     assert_int_equal(s->wake[0].n_vortex, 1);
     for (int n = 1; n <= 20; n++) {
         const double shed = s->y[fish->at.circulation];
-        school_ok(simulation->integrator->advance(simulation->solver, 0.02 * n, NULL, NULL));
+        school_ok(simulate_interval(simulation, 0.02 * n));
         // no shedding between events
         NEAR(s->y[fish->at.circulation], shed, 1e-12, 0);
         int jumped = 0;
@@ -194,7 +194,7 @@ TEST(impulses_by_rate_are_the_rate_times_the_interval) {
     const struct fish *fish = simulation->school->fish;
     struct state *const s = simulation->state;
     for (int n = 1; n <= 10; n++) {
-        school_ok(simulation->integrator->advance(simulation->solver, 0.02 * n, NULL, NULL));
+        school_ok(simulate_interval(simulation, 0.02 * n));
         const double shed = s->y[fish->at.circulation];
         // the wake as it will be moved, the unknowns as they are: t just at the event
         double value[100];
