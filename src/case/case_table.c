@@ -274,8 +274,6 @@ const struct key case_table[] = {
      .meaning = "Kutta condition; edge: the sheet strength at the tail vanishes; rate: the slip velocity at the tail "
                 "sets the shedding rate",
      .published = "rate", .words = WORDS("edge", "rate"), .synonyms = "kutta_condition"},
-    {"sheet.kutta_ramp", REAL, AT(school.sheet.kutta_ramp), "0", FROM(0), "s",
-     .meaning = "kutta rate: time over which shedding is ramped up"},
 
     {"contact.action", CHOICE, AT(school.contact.action), "repel", ANY, "",
      .meaning = "bodies closer than contact.range; repel: a repulsive force; warn: a warning in the result; stop: the "

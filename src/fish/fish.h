@@ -200,7 +200,6 @@ struct school {
     double lifetime, decay;   /* of a free vortex, s */
     enum shedding shedding;
     enum kutta kutta;
-    double kutta_ramp; /* s */
     enum removed_circulation removed;
     bool finite;           /* whether the sheets are vortex rings: some fish has force: pressure with span: finite */
     double wake_tolerance; /* estimated error of the velocity of the wakes at the bodies, lengths per beat; 0: none */

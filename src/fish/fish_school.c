@@ -99,7 +99,6 @@ static void wake_set(struct school *school, const struct school_parameters *para
     school->decay = wake->decay.seconds;
     school->shedding = wake->shedding;
     school->kutta = parameters->sheet.kutta;
-    school->kutta_ramp = parameters->sheet.kutta_ramp;
     school->removed = wake->removed_circulation;
     school->wake_tolerance = wake->tolerance;
     school->wake_spacing = 0.65;

@@ -79,7 +79,6 @@ struct sheet_parameters {
     enum body_line curve;
     enum collocation collocation;
     enum kutta kutta;
-    double kutta_ramp; /* s */
 };
 
 struct body_parameters {

@@ -144,28 +144,27 @@ static double tail_slip_along(const struct fish *fish, const struct direction *b
     return slip[0] * body->t[0] + slip[1] * body->t[1];
 }
 
-double bound_sheet_shedding_rate(const struct fish *fish, double chi, const double *u, const double *v,
-                                 const double *y) {
+double bound_sheet_shedding_rate(const struct fish *fish, const double *u, const double *v, const double *y) {
     const struct direction body = fish_direction(fish, &fish->tail_tangent, y);
     double slip[2];
-    return chi * y[fish->at.gamma + fish->n_sheet - 1] * tail_slip_along(fish, &body, u, v, y, slip);
+    return y[fish->at.gamma + fish->n_sheet - 1] * tail_slip_along(fish, &body, u, v, y, slip);
 }
 
-void bound_sheet_kutta_residual(const struct fish *fish, enum bound_sheet_law law, double chi, const double *u,
-                                const double *v, const double *y, const double *yp, double *residual) {
+void bound_sheet_kutta_residual(const struct fish *fish, enum bound_sheet_law law, const double *u, const double *v,
+                                const double *y, const double *yp, double *residual) {
     const int last = fish->n_sheet - 1;
     double value = yp[fish->at.circulation];
     switch (law) {
         case BOUND_SHEET_EDGE: value = fish->sheet_weight[last] * y[fish->at.gamma + last]; break;
-        case BOUND_SHEET_RATE: value -= bound_sheet_shedding_rate(fish, chi, u, v, y); break;
+        case BOUND_SHEET_RATE: value -= bound_sheet_shedding_rate(fish, u, v, y); break;
         case BOUND_SHEET_FROZEN: break;
     }
 
     residual[fish->at.circulation] = value;
 }
 
-void bound_sheet_kutta_jacobian(const struct fish *fish, enum bound_sheet_law law, double chi, double cj,
-                                const double *u, const double *v, const double *y, struct sparse *jacobian) {
+void bound_sheet_kutta_jacobian(const struct fish *fish, enum bound_sheet_law law, double cj, const double *u,
+                                const double *v, const double *y, struct sparse *jacobian) {
     const int last = fish->n_sheet - 1, tail = fish->n_nodes - 1, row = fish->at.circulation;
     if (law == BOUND_SHEET_EDGE) {
         sparse_add(jacobian, row, fish->at.gamma + last, fish->sheet_weight[last]);
@@ -178,9 +177,9 @@ void bound_sheet_kutta_jacobian(const struct fish *fish, enum bound_sheet_law la
     const struct direction body = fish_direction(fish, &fish->tail_tangent, y);
     double slip[2];
     const double along = tail_slip_along(fish, &body, u, v, y, slip);
-    const double strength = chi * y[fish->at.gamma + last];
+    const double strength = y[fish->at.gamma + last];
 
-    sparse_add(jacobian, row, fish->at.gamma + last, -chi * along);
+    sparse_add(jacobian, row, fish->at.gamma + last, -along);
     sparse_add(jacobian, row, fish->at.vx + tail, strength * body.t[0]);
     sparse_add(jacobian, row, fish->at.vy + tail, strength * body.t[1]);
 
@@ -190,10 +189,10 @@ void bound_sheet_kutta_jacobian(const struct fish *fish, enum bound_sheet_law la
     bound_sheet_tangent_jacobian(fish, &fish->tail_tangent, row, by_vector, jacobian);
 }
 
-void bound_sheet_kutta_flow_jacobian(const struct fish *fish, double chi, const struct influence_block *block,
-                                     const double *y, struct coupling_block *rows) {
+void bound_sheet_kutta_flow_jacobian(const struct fish *fish, const struct influence_block *block, const double *y,
+                                     struct coupling_block *rows) {
     const struct direction body = fish_direction(fish, &fish->tail_tangent, y);
-    const double strength = chi * y[fish->at.gamma + fish->n_sheet - 1];
+    const double strength = y[fish->at.gamma + fish->n_sheet - 1];
     const double *const u = block->u + flow_tail(fish), *const v = block->v + flow_tail(fish);
     double *const row = rows->value + (fish->at.circulation - fish->at.ax);
 

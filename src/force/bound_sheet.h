@@ -10,7 +10,7 @@
 /* The equation for the circulation shed by a fish. */
 enum bound_sheet_law {
     BOUND_SHEET_EDGE,  /* the bound vortex at the tail vanishes */
-    BOUND_SHEET_RATE,  /* dGamma/dt = chi gamma_{M-1} ubar */
+    BOUND_SHEET_RATE,  /* dGamma/dt = gamma_{M-1} ubar */
     BOUND_SHEET_FROZEN /* dGamma/dt = 0: nothing is shed between events (impulsive) */
 };
 
@@ -27,18 +27,17 @@ void bound_sheet_jacobian(const struct fish *fish, const double *u, const double
 void bound_sheet_flow_jacobian(const struct fish *fish, const struct influence_block *block, const double *y,
                                struct coupling_block *rows);
 
-/* The shedding rate dGamma/dt of law BOUND_SHEET_RATE, m2 s-2; u, v as above; chi: the ramp. */
-double bound_sheet_shedding_rate(const struct fish *fish, double chi, const double *u, const double *v,
-                                 const double *y);
+/* The shedding rate dGamma/dt of law BOUND_SHEET_RATE, m2 s-2; u, v as above. */
+double bound_sheet_shedding_rate(const struct fish *fish, const double *u, const double *v, const double *y);
 
 /* The row circulation, the derivatives of this row, and the derivatives through the velocity of the fluid
  * (BOUND_SHEET_RATE only). */
-void bound_sheet_kutta_residual(const struct fish *fish, enum bound_sheet_law law, double chi, const double *u,
-                                const double *v, const double *y, const double *yp, double *residual);
-void bound_sheet_kutta_jacobian(const struct fish *fish, enum bound_sheet_law law, double chi, double cj,
-                                const double *u, const double *v, const double *y, struct sparse *jacobian);
-void bound_sheet_kutta_flow_jacobian(const struct fish *fish, double chi, const struct influence_block *block,
-                                     const double *y, struct coupling_block *rows);
+void bound_sheet_kutta_residual(const struct fish *fish, enum bound_sheet_law law, const double *u, const double *v,
+                                const double *y, const double *yp, double *residual);
+void bound_sheet_kutta_jacobian(const struct fish *fish, enum bound_sheet_law law, double cj, const double *u,
+                                const double *v, const double *y, struct sparse *jacobian);
+void bound_sheet_kutta_flow_jacobian(const struct fish *fish, const struct influence_block *block, const double *y,
+                                     struct coupling_block *rows);
 
 /* Derivative of the end correction in the row of control point c by the unknown of bound vortex j, 1. */
 double bound_sheet_end_correction(const struct fish *fish, int c, int j);

@@ -49,8 +49,7 @@ static enum status event_release_impulse(struct state *state, struct residual *r
         // shedding rate times the interval
         TRY(event_evaluate(residual, state));
         for (int f = 0; f < school->n_fish; f++) {
-            state->y[school->fish[f].at.circulation] +=
-                school->interval * residual_kutta_rate(residual, f, state->t, state->y);
+            state->y[school->fish[f].at.circulation] += school->interval * residual_kutta_rate(residual, f, state->y);
         }
     }
 

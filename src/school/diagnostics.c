@@ -279,8 +279,8 @@ static void diagnostics_fill_fish(struct residual *residual, const struct state 
     to->wave_amplitude = gait.amplitude * fish->amplitude;
     to->wave_frequency = gait.omega / (2 * M_PI);
     to->shed_circulation = y[fish->at.circulation];
-    to->shedding_rate = residual->school->kutta == KUTTA_EDGE ? state->yp[fish->at.circulation]
-                                                              : residual_kutta_rate(residual, f, state->t, y);
+    to->shedding_rate =
+        residual->school->kutta == KUTTA_EDGE ? state->yp[fish->at.circulation] : residual_kutta_rate(residual, f, y);
 
     // energies, powers, and the energy balance
     const struct diagnostics_energies energies = diagnostics_energies(residual, f, state->t, y);

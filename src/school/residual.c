@@ -219,15 +219,14 @@ int residual_shed_is_algebraic(const struct residual *residual) {
     return residual_sheet_law(residual, &residual_run) == BOUND_SHEET_EDGE;
 }
 
-double residual_kutta_rate(const struct residual *residual, int f, double t, const double *y) {
+double residual_kutta_rate(const struct residual *residual, int f, const double *y) {
     const int first = residual->flow->points[f].first;
-    return bound_sheet_shedding_rate(&residual->school->fish[f], ramp_value(t, residual->school->kutta_ramp),
-                                     residual->flow->u + first, residual->flow->v + first, y);
+    return bound_sheet_shedding_rate(&residual->school->fish[f], residual->flow->u + first, residual->flow->v + first,
+                                     y);
 }
 
-double residual_shed_rate(const struct residual *residual, const struct residual_mode *mode, int f, double t,
-                          const double *y) {
-    return residual_sheet_law(residual, mode) == BOUND_SHEET_RATE ? residual_kutta_rate(residual, f, t, y) : 0;
+double residual_shed_rate(const struct residual *residual, const struct residual_mode *mode, int f, const double *y) {
+    return residual_sheet_law(residual, mode) == BOUND_SHEET_RATE ? residual_kutta_rate(residual, f, y) : 0;
 }
 
 double residual_lost(const struct residual *residual, int f, double t) {
@@ -333,8 +332,7 @@ static void evaluate_fish(struct residual *residual, const struct residual_mode 
 
     // impermeability, Kelvin, Kutta
     bound_sheet_residual(fish, residual_lost(residual, f, t), u, v, y, value);
-    bound_sheet_kutta_residual(fish, residual_sheet_law(residual, mode), ramp_value(t, school->kutta_ramp), u, v, y, yp,
-                               value);
+    bound_sheet_kutta_residual(fish, residual_sheet_law(residual, mode), u, v, y, yp, value);
 
     control_residual(fish, &state->control[f], t, t - state->t, y, value);
 }

@@ -136,11 +136,10 @@ void residual_reaction(const struct residual *residual, int f, const double *y, 
 
 /* The shedding rate of fish f by the rate form of the Kutta condition, m2 s-2. Uses the flow velocity of the last
  * evaluation. */
-double residual_kutta_rate(const struct residual *residual, int f, double t, const double *y);
+double residual_kutta_rate(const struct residual *residual, int f, const double *y);
 
 /* The rate of the circulation shed by fish f as a differential unknown: residual_kutta_rate, or 0 between impulses. */
-double residual_shed_rate(const struct residual *residual, const struct residual_mode *mode, int f, double t,
-                          const double *y);
+double residual_shed_rate(const struct residual *residual, const struct residual_mode *mode, int f, const double *y);
 
 /* Removed circulation that is dropped from the Kelvin equation of fish f, m2 s-1. */
 double residual_lost(const struct residual *residual, int f, double t);

@@ -12,7 +12,7 @@
 #include "school/residual.h"
 
 // derivatives of the equations of fish f by the unknowns of fish g through the flow velocity
-static void flow_jacobian(const struct residual *residual, const struct residual_mode *mode, int f, int g, double t,
+static void flow_jacobian(const struct residual *residual, const struct residual_mode *mode, int f, int g,
                           const double *y, struct influence_block *block, struct coupling_block *rows) {
     const struct fish *fish = &residual->school->fish[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
@@ -30,7 +30,7 @@ static void flow_jacobian(const struct residual *residual, const struct residual
     }
     bound_sheet_flow_jacobian(fish, block, y, rows);
     if (residual_sheet_law(residual, mode) == BOUND_SHEET_RATE) {
-        bound_sheet_kutta_flow_jacobian(fish, ramp_value(t, residual->school->kutta_ramp), block, y, rows);
+        bound_sheet_kutta_flow_jacobian(fish, block, y, rows);
     }
 }
 
@@ -105,16 +105,15 @@ static void fish_jacobian(struct residual *residual, const struct residual_mode 
         if (!mode->forces) pressure_jacobian(residual->pressure[f], own);
     }
     bound_sheet_jacobian(fish, u, v, y, own);
-    bound_sheet_kutta_jacobian(fish, residual_sheet_law(residual, mode), ramp_value(t, school->kutta_ramp), cj, u, v, y,
-                               own);
+    bound_sheet_kutta_jacobian(fish, residual_sheet_law(residual, mode), cj, u, v, y, own);
     control_jacobian(fish, memory, t, since, y, own);
 
     // dependence through the flow velocity: on the unknowns of this fish, then on the unknowns of coupled fish
-    flow_jacobian(residual, mode, f, f, t, y, &jacobian_scratch->block, &jacobian_scratch->rows);
+    flow_jacobian(residual, mode, f, f, y, &jacobian_scratch->block, &jacobian_scratch->rows);
     add_own_rows(residual, mode, fish, &jacobian_scratch->rows, own);
     for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
         struct jacobian_coupling *const coupling = &jacobian->coupling[i];
-        flow_jacobian(residual, mode, f, coupling->other, t, y, &jacobian_scratch->block, &coupling->rows);
+        flow_jacobian(residual, mode, f, coupling->other, y, &jacobian_scratch->block, &coupling->rows);
 
         // masked rows
         const struct coupling_block *const rows = &coupling->rows;

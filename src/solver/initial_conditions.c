@@ -194,7 +194,7 @@ enum status initial_conditions_solve(struct initial_conditions *c, const struct 
         for (int i = at->x; i < at->vx; i++) yp[i] = y[i + (at->vx - at->x)];
         const int second = fish_has_momentum(&school->fish[f]) ? at->px : at->vx;
         for (int i = second; i < at->ax; i++) yp[i] = y[i + (at->ax - second)];
-        if (c->kind[at->circulation] > 0) yp[at->circulation] = residual_shed_rate(c->residual, c->mode, f, t, y);
+        if (c->kind[at->circulation] > 0) yp[at->circulation] = residual_shed_rate(c->residual, c->mode, f, y);
     }
     return STATUS_OK;
 }

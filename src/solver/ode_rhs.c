@@ -292,7 +292,7 @@ enum status ode_rhs_rates(struct ode_rhs *d, double t, double *y, double *yp) {
         memcpy(yp + at->x, y + at->vx, size);
         memcpy(yp + (fish_has_momentum(fish) ? at->px : at->vx), y + at->ax, size);
         yp[at->circulation] =
-            residual_shed_is_algebraic(d->residual) ? 0 : residual_shed_rate(d->residual, &residual_run, f, t, y);
+            residual_shed_is_algebraic(d->residual) ? 0 : residual_shed_rate(d->residual, &residual_run, f, y);
         if (!isfinite(y[at->ax]) || !isfinite(y[at->ay])) {
             return status_fail(STATUS_RETRY, "the nose of fish %s has no finite acceleration at t = %g s", fish->name,
                                t);

@@ -227,7 +227,6 @@ TEST(preset_published_sets_the_options_of_the_article) {
     NEAR(s.school.fish->wave.ramp, 1, 0, 0);
     assert_int_equal(s.school.sheet.collocation, COLLOCATION_MIDPOINT);
     assert_int_equal(s.school.sheet.kutta, KUTTA_RATE);
-    NEAR(s.school.sheet.kutta_ramp, 0, 0, 0);
     assert_int_equal(s.school.wake.shedding, SHEDDING_IMPULSIVE);
     NEAR(s.school.sheet.smoothing, 0.01, 0, 0);
     NEAR(s.school.wake.lifetime.seconds, 2, 0, 0);

@@ -19,7 +19,7 @@ static void of_fish(struct setup *setup, int f, const double **u, const double *
     *v = setup->residual->flow->v + setup->residual->flow->points[f].first;
 }
 
-static const double removed = 0.3, chi = 0.6;
+static const double removed = 0.3;
 static enum bound_sheet_law law; /* law of the Jacobian under test */
 
 static void value_of_sheet(struct setup *setup, const double *y, const double *yp, double *value) {
@@ -28,7 +28,7 @@ static void value_of_sheet(struct setup *setup, const double *y, const double *y
         const double *u, *v;
         of_fish(setup, f, &u, &v);
         bound_sheet_residual(&setup->school->fish[f], removed, u, v, y, value);
-        bound_sheet_kutta_residual(&setup->school->fish[f], law, chi, u, v, y, yp, value);
+        bound_sheet_kutta_residual(&setup->school->fish[f], law, u, v, y, yp, value);
     }
 }
 
@@ -38,11 +38,11 @@ static void jacobian_of_sheet(struct setup *setup, double cj, const double *y, s
         const double *u, *v;
         of_fish(setup, f, &u, &v);
         bound_sheet_jacobian(fish, u, v, y, jacobian);
-        bound_sheet_kutta_jacobian(fish, law, chi, cj, u, v, y, jacobian);
+        bound_sheet_kutta_jacobian(fish, law, cj, u, v, y, jacobian);
         for (int g = 0; g < setup->school->n_fish; g++) {
             struct jacobian_scratch *const through = school_influence(setup, f, g);
             bound_sheet_flow_jacobian(fish, &through->block, y, &through->rows);
-            if (law == BOUND_SHEET_RATE) bound_sheet_kutta_flow_jacobian(fish, chi, &through->block, y, &through->rows);
+            if (law == BOUND_SHEET_RATE) bound_sheet_kutta_flow_jacobian(fish, &through->block, y, &through->rows);
             school_add_rows(setup, f, g, jacobian);
         }
     }
@@ -318,5 +318,5 @@ TEST(shedding_rate_is_edge_strength_times_slip) {
     // the last two bound points lie on the last edge
     const double e[2] = {y[fish->at.x + 6] - y[fish->at.x + 5], y[fish->at.y + 6] - y[fish->at.y + 5]};
     const double along = (slip[0] * e[0] + slip[1] * e[1]) / hypot(e[0], e[1]);
-    NEAR(bound_sheet_shedding_rate(fish, 0.6, u, v, y), 0.6 * y[fish->at.gamma + 8] * along, 0, 1e-13);
+    NEAR(bound_sheet_shedding_rate(fish, u, v, y), y[fish->at.gamma + 8] * along, 0, 1e-13);
 }

@@ -65,7 +65,7 @@ static const struct run {
                      "start: {position: [0.3, 0.5], heading: 190},\n     wave: {frequency: 3}}]\n"},
     {"published",
      "format: 1\ntime: {end: 0.3, shedding_interval: 0.0125}\nsolver: {method: rk4, step: 2.5e-4}\npreset: published\n"
-     "fluid: {velocity: [0.2, 0.1]}\nwake: {lifetime: 0.1, removed_circulation: dropped}\nsheet: {kutta_ramp: 0.5}\n"
+     "fluid: {velocity: [0.2, 0.1]}\nwake: {lifetime: 0.1, removed_circulation: dropped}\n"
      "defaults: {fish: {drag: {normal: 0.5}}}\n"
      "fish: [{sheet_points: 15, wave: {frequency: 4, ramp: 0.2}, start: {speed: 0.7}},\n"
      "    {sheet_points: 13, length: 0.8, wave: {frequency: 3, ramp: 0}, start: {position: [0.2, 0.6], speed: 0.5,\n"
@@ -167,7 +167,7 @@ static const struct run {
     {"steady_rate",
      "format: 1\ntime: {end: 1, shedding_interval: 0.05}\nsolver: {rtol: 1e-8}\n" BODY
      "fluid: {density: 100, velocity: [0.9, 0.1]}\nwake: {shedding: continuous, lifetime: 2, decay: 0.5}\n"
-     "sheet: {kutta: rate, kutta_ramp: 0.05}\n"
+     "sheet: {kutta: rate}\n"
      "fish: [{force: reactive, nodes: 5, sheet_points: 17, wave: {amplitude: 0, frequency: 0}, motion: {prescribed: "
      "head}, "
      "body: {modulus: 1e5}}]\n"},
@@ -426,7 +426,6 @@ static const char *const school_parts[][4] = {
      TAPERED("[0.08, 0.09, 0.07, 0.05]", "[0.1, 0.15, 0.25, 0.2]")},
 };
 
-#define RATE "sheet.kutta=rate; sheet.kutta_ramp=0.05"
 #define SINE "fluid.gust.amplitude=0.1; fluid.gust.profile=sine; fluid.gust.wavelength=0.7"
 #define STEP "fluid.gust.amplitude=0.1; fluid.gust.profile=step; fluid.gust.gradient_distance=0.3"
 #define STREET "wake.street.vortices=6; wake.street.spacing=0.3; wake.street.circulation=0.02"
@@ -468,7 +467,6 @@ static const char *const assignments[] = {
     "wake.lifetime=0.02; wake.decay=0.015; wake.removed_circulation=dropped",
     "r wake.shedding=continuous",
     "r wake.shedding=continuous; sheet.kutta=rate",
-    "r wake.shedding=continuous; " RATE,
     "r wake.shedding=impulsive",
     "p wake.vortices=[[0.5, 0.4, 0.05]]",
     "p " STREET,

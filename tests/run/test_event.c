@@ -199,7 +199,7 @@ TEST(impulses_by_rate_are_the_rate_times_the_interval) {
         // the wake as it will be moved, the unknowns as they are: t just at the event
         double value[100];
         school_ok(residual_evaluate(simulation->residual, &residual_run, 0.02 * n, s->y, s->yp, value));
-        const double rate = residual_kutta_rate(simulation->residual, 0, 0.02 * n, s->y);
+        const double rate = residual_kutta_rate(simulation->residual, 0, s->y);
         int jumped = 0;
         school_ok(event_next(s, simulation->residual, simulation->consistent, &jumped));
         NEAR(s->y[fish->at.circulation] - shed, 0.02 * rate, 1e-12, 1e-12);
