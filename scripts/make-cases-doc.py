@@ -194,6 +194,46 @@ SECTIONS = {
     "fish.control": "Heading control",
 }
 
+# Keys that neither a case nor a study in cases/ sets: who sets them, and when. tests/extra/key_users.py compares.
+UNSET = [
+    ("time.checkpoint_interval, time.checkpoint_wall", "who runs for hours on a cluster, where a job can end before the run"),
+    ("fluid.shear", "who puts fish into a stream that varies across it"),
+    ("fluid.gust.profile, fluid.gust.amplitude, fluid.gust.frequency, fluid.gust.wavelength, fluid.gust.speed, "
+     "fluid.gust.position, fluid.gust.gradient_distance",
+     "who studies fish and foils in unsteady water: `uniform` for a tank that oscillates, `sine` and `step` for gusts "
+     "that travel, as in the theories of Sears and Kuessner (doc/verification.md)"),
+    ("wake.taper, wake.taper_beside", "who wants to see how much a result depends on the smoothing near the bodies"),
+    ("wake.removed_circulation", "who lets removed vortices count no longer in Kelvin's theorem (doc/article.md)"),
+    ("wake.tolerance", "who wants direct summation, with 0, or schools of thousands in less time"),
+    ("wake.spare_vortices", "a program that adds vortices or moves fish between steps (doc/python.md)"),
+    ("wake.vortices", "who lets a fish meet a vortex of given strength"),
+    ("wake.street.row_distance", "who wants a vortex street other than von Karman's"),
+    ("contact.action, contact.range",
+     "who wants to see whether contact decides a result: `warn` or `stop`, or another range"),
+    ("solver.threads", "who has a school of ten fish or more; `--threads` sets it for one run"),
+    ("solver.linear", "who has a dense school, in which `klu` may be faster than `blocks`"),
+    ("solver.error_test", "who studies forces and powers within an interval (doc/numerics.md, section 3)"),
+    ("output.file", "who runs one case several times; `-o` sets it for one run"),
+    ("output.forces", "who wants the load along the body (`edges`), or friction to compare with a solution of the "
+     "Navier-Stokes equations (`sides`, doc/model.md, section 9)"),
+    ("fish.pressure.suction", "who models a nose at which the flow separates always, with 0"),
+    ("fish.sensors", "who models the lateral line"),
+    ("fish.reference_nodes, fish.body.bending_damping, fish.body.stretching_damping, fish.body.damping",
+     "who repeats computations of the article with other values than `preset: published` sets"),
+    ("fish.body.section", "who repeats computations of the article: `nodes`"),
+    ("fish.wave.wavelength", "who knows the wavelength of a fish rather than the wavenumber"),
+    ("fish.drag.transition, fish.drag.waving", "who has measured the friction of a body"),
+    ("fish.drag.law, fish.drag.linear_speed",
+     "who models small fish, whose drag grows in proportion to the speed while they are slow"),
+    ("fish.added_mass.extent", "who repeats computations of the article: `thickness`"),
+    ("fish.load.tip", "who tows a fish, or loads a body at rest to measure its stiffness"),
+    ("fish.control.acceptance_radius, fish.control.slow, fish.control.course_filter, fish.control.limit, "
+     "fish.control.rate", "who designs a controller: each is a parameter of its law (doc/model.md, section 11)"),
+    ("fish.control.feedforward, fish.control.filter",
+     "who compares control with and without the feedforward of the article"),
+    ("fish.control.ramp", "a program that changes the beat or the bias between steps (doc/python.md)"),
+]
+
 
 def section_of(key):
     """The section of a key; deeper maps such as fluid.gust belong to that of their parent."""
@@ -261,6 +301,10 @@ def main():
         print(line if whole == line else textwrap.fill(whole, 120, break_on_hyphens=False))
     for section, keys in sections.items():
         print("\n".join(table(section, keys)))
+    print("\n## Keys that no case sets\n\nNo case and no study in cases/ sets these keys.\n")
+    print("| keys | who sets them, and when |\n|---|---|")
+    for paths, who in UNSET:
+        print(f"| {', '.join(code(path) for path in paths.split(', '))} | {cell(who)} |")
 
 
 if __name__ == "__main__":

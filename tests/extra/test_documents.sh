@@ -17,6 +17,13 @@ for document in "$root"/README.md "$root"/doc/*.md; do
 done
 check "there are documents with output" test "$n" -ge 3
 
+"$program" keys --json >keys.json
+check "every key has a user" /usr/bin/python3 "$root/tests/extra/key_users.py" "$root" <keys.json
+mkdir -p lacking/doc
+cp -r "$root/cases" lacking
+sed '/`fish.load.tip`/d' "$root/doc/cases.md" >lacking/doc/cases.md
+check "a key without a user is found" bash -c '! "$@" <keys.json' bash /usr/bin/python3 "$root/tests/extra/key_users.py" lacking
+
 # ---- a document with output that is true, and the same with one change each
 
 true_page() {
