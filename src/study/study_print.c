@@ -15,6 +15,80 @@
 #include "run/simulate.h"
 #include "study/study_folder.h"
 
+// ---- lines about several members
+
+/* Whether two lines differ at most in numbers: of two warnings, their kind and the fish agree. */
+static bool lines_agree(const char *a, int n, const char *b, int m) {
+    static const char digits[] = "0123456789.";
+    const char *const end_a = a + n, *const end_b = b + m;
+    while (a < end_a && b < end_b) {
+        const bool is_number = *a >= '0' && *a <= '9' && *b >= '0' && *b <= '9';
+        if (!is_number && *a != *b) return false;
+        a += is_number ? (long)strspn(a, digits) : 1;
+        b += is_number ? (long)strspn(b, digits) : 1;
+        // exponents: 4e+03 and 27
+        if (is_number && a < end_a && *a == 'e') a += 1 + strspn(a + 1, "+-0123456789");
+        if (is_number && b < end_b && *b == 'e') b += 1 + strspn(b + 1, "+-0123456789");
+    }
+    return a >= end_a && b >= end_b;
+}
+
+/* A line about several members. */
+struct line_group {
+    const char *line; /* of the first member, without the line break */
+    int length, n;
+    bool differs; /* the numbers of another member are others */
+    int *member;  /* ascending                                         (n) */
+};
+
+struct line_groups {
+    struct arena *arena;
+    int n;
+    struct line_group *group; /* (n) */
+};
+
+/* Add a line about a member, without the line break, to the group of its kind, or to a new group. */
+static void group_line(struct line_groups *groups, const char *line, int length, int member) {
+    int g = 0;
+    while (g < groups->n && !lines_agree(groups->group[g].line, groups->group[g].length, line, length)) g++;
+    if (g == groups->n) {
+        GROW(groups->arena, groups->group, ++groups->n);
+        groups->group[g] = (struct line_group){.line = line, .length = length};
+    }
+    struct line_group *const group = &groups->group[g];
+    group->differs |= length != group->length || memcmp(group->line, line, (size_t)length) != 0;
+    GROW(groups->arena, group->member, group->n + 1);
+    group->member[group->n++] = member;
+}
+
+/* Print "members 0-2, 5", or with the number "4 members (0-2, 5)", the word, and the line of the first member. */
+static void print_line(const struct line_group *group, bool with_number, const char *word, FILE *stream) {
+    const bool has_number = with_number && group->n > 1;
+    if (has_number) fprintf(stream, "%d ", group->n);
+    fprintf(stream, "member%s %s", group->n > 1 ? "s" : "", has_number ? "(" : "");
+    for (int i = 0, first = 0; i < group->n; i++) {
+        if (i + 1 < group->n && group->member[i + 1] <= group->member[i] + 1) continue;
+        fprintf(stream, "%s%d", first > 0 ? ", " : "", group->member[first]);
+        if (group->member[i] > group->member[first]) fprintf(stream, "-%d", group->member[i]);
+        first = i + 1;
+    }
+    fprintf(stream, "%s%s%.*s", has_number ? ")" : "", word, group->length, group->line);
+    if (group->differs) fprintf(stream, " (numbers of member %d)", group->member[0]);
+    fprintf(stream, "\n");
+}
+
+/* Print the members that have failed, and with all every member that is not complete: a failure that repeats once, with
+ * the number of its members. */
+static void print_failures(struct arena *arena, const struct member_file *members, int n, bool all, FILE *stream) {
+    struct line_groups groups = {.arena = arena};
+    for (int m = 0; m < n; m++) {
+        const char *const status = members[m].status;
+        const bool is_shown = all ? !member_file_is_complete(&members[m]) : strchr(status, ':') != NULL;
+        if (is_shown) group_line(&groups, status, (int)strlen(status), m);
+    }
+    for (int g = 0; g < groups.n; g++) print_line(&groups.group[g], true, all ? ": " : " ", stream);
+}
+
 // ---- members
 
 enum { MAX_FISH_SHOWN = 4, MAX_WARNINGS_SHOWN = 20 };
@@ -125,78 +199,26 @@ void study_print(struct arena *arena, const struct case_values *study, const str
     if (n_fish < study->school.n_fish) {
         fprintf(stream, "The first %d of %d fish; study.nc has all.\n", n_fish, study->school.n_fish);
     }
-    for (int m = 0; m < n; m++) {
-        if (strchr(members[m].status, ':')) fprintf(stream, "member %d %s\n", m, members[m].status);
-    }
+    print_failures(arena, members, n, false, stream);
 }
 
 // ---- warnings
 
-/* Whether two warnings differ at most in numbers: kind of the warning and fish agree. */
-static bool warnings_agree(const char *a, int n, const char *b, int m) {
-    static const char digits[] = "0123456789.";
-    const char *const end_a = a + n, *const end_b = b + m;
-    while (a < end_a && b < end_b) {
-        const bool is_number = *a >= '0' && *a <= '9' && *b >= '0' && *b <= '9';
-        if (!is_number && *a != *b) return false;
-        a += is_number ? (long)strspn(a, digits) : 1;
-        b += is_number ? (long)strspn(b, digits) : 1;
-        // exponents: 4e+03 and 27
-        if (is_number && a < end_a && *a == 'e') a += 1 + strspn(a + 1, "+-0123456789");
-        if (is_number && b < end_b && *b == 'e') b += 1 + strspn(b + 1, "+-0123456789");
-    }
-    return a >= end_a && b >= end_b;
-}
-
-/* A warning of several members. */
-struct warning_group {
-    const char *line; /* of the first member, without the line break */
-    int length, n;
-    bool differs; /* the numbers of another member are others */
-    int *member;  /* ascending                                         (n) */
-};
-
 int study_print_warnings(struct arena *arena, const struct member_file *members, int n, FILE *stream) {
-    struct warning_group *groups = NULL;
-    int n_warnings = 0, n_groups = 0;
-
-    // add each warning of each member to the group of its kind, or to a new group
+    struct line_groups groups = {.arena = arena};
+    int n_warnings = 0;
     for (int m = 0; m < n; m++) {
         int length;
         for (const char *line = members[m].warnings; line && *line; line += length + (line[length] == '\n')) {
             length = (int)strcspn(line, "\n");
             n_warnings++;
-            int g = 0;
-            while (g < n_groups && !warnings_agree(groups[g].line, groups[g].length, line, length)) g++;
-            if (g == n_groups) {
-                GROW(arena, groups, ++n_groups);
-                groups[g] = (struct warning_group){.line = line, .length = length};
-            }
-            struct warning_group *const group = &groups[g];
-            group->differs |= length != group->length || memcmp(group->line, line, (size_t)length) != 0;
-            GROW(arena, group->member, group->n + 1);
-            group->member[group->n++] = m;
+            group_line(&groups, line, length, m);
         }
     }
-
-    for (int g = 0; g < n_groups && g < MAX_WARNINGS_SHOWN; g++) {
-        const struct warning_group *const group = &groups[g];
-
-        // "0-2, 5": ranges of members
-        fprintf(stream, "member%s ", group->n > 1 ? "s" : "");
-        for (int i = 0, first = 0; i < group->n; i++) {
-            if (i + 1 < group->n && group->member[i + 1] <= group->member[i] + 1) continue;
-            fprintf(stream, "%s%d", first > 0 ? ", " : "", group->member[first]);
-            if (group->member[i] > group->member[first]) fprintf(stream, "-%d", group->member[i]);
-            first = i + 1;
-        }
-        fprintf(stream, ": warning: %.*s", group->length, group->line);
-        if (group->differs) fprintf(stream, " (numbers of member %d)", group->member[0]);
-        fprintf(stream, "\n");
-    }
-
-    if (n_groups > MAX_WARNINGS_SHOWN)
-        fprintf(stream, "The first %d of %d kinds of warnings; study.nc has all.\n", MAX_WARNINGS_SHOWN, n_groups);
+    for (int g = 0; g < groups.n && g < MAX_WARNINGS_SHOWN; g++)
+        print_line(&groups.group[g], false, ": warning: ", stream);
+    if (groups.n > MAX_WARNINGS_SHOWN)
+        fprintf(stream, "The first %d of %d kinds of warnings; study.nc has all.\n", MAX_WARNINGS_SHOWN, groups.n);
     return n_warnings;
 }
 
@@ -740,9 +762,8 @@ static void print_reasons(const struct error_study *study, const struct member_f
             if (is_objection) break;
         }
     }
-    for (int m = 0; m < sweep_n_members(study->study) && study->relation == ERROR_VALUE; m++) {
-        if (!member_file_is_complete(&members[m])) fprintf(stream, "member %d: %s\n", m, members[m].status);
-    }
+    if (study->relation != ERROR_VALUE) return;
+    print_failures(study->sweep->arena, members, sweep_n_members(study->study), true, stream);
 }
 
 /* Print a row of values and errors for each point of a sweep. */
@@ -843,9 +864,7 @@ static void print_points(const struct error_sweep *sweep, const struct member_fi
                 "other points\n");
     }
     fprintf(stream, "error.csv has the shares of the keys and the reasons of flags\n");
-    for (int m = 0; m < sweep_n_members(&sweep->study); m++) {
-        if (!member_file_is_complete(&members[m])) fprintf(stream, "member %d: %s\n", m, members[m].status);
-    }
+    print_failures(sweep->arena, members, sweep_n_members(&sweep->study), true, stream);
 }
 
 /* Print ratios and differences of one point, with the shares of the keys in the ratios. */

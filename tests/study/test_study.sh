@@ -26,7 +26,8 @@ end
 run study swimmer.yaml -j 2
 check failed_members_give_exit_code_1 test "$code" = 1
 check failures_are_counted has err '2 of 6 members in swimmer-study are not complete'
-check the_reason_is_printed has out 'member 2 failed: limited by solver.max_steps at t = '
+check the_reason_is_printed_once eval 'grep -q "^2 members (2, 5) failed: limited by solver.max_steps at t = " out &&
+    test "$(grep -c "failed: limited" out)" = 1'
 check the_reason_is_kept has swimmer-study/member-0002.failed 'limited by solver.max_steps at t = '
 check members_are_numbered_from_0 test -e swimmer-study/member-0000.nc -a -e swimmer-study/member-0005.nc -a \
     ! -e swimmer-study/member-0006.nc
