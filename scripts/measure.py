@@ -267,12 +267,6 @@ def depth(bench):
                f"{math.exp(study['steady_growth'][i]):.3f}")
 
 
-def with_bar(value, bar):
-    """0.9364 +- 0.0019"""
-    decimals = max(0, 1 - math.floor(math.log10(bar))) if bar > 0 else 4
-    return f"{value:.{decimals}f} ± {bar:.{decimals}f}"
-
-
 def strings(variable):
     """The strings of a variable over (n, text)."""
     return [text.strip("\0 ") for text in netCDF4.chartostring(np.asarray(variable[:], dtype="S1"))]
@@ -286,25 +280,45 @@ def open_study(path):
     return study
 
 
-@table("case", "fish", "speed [m/s]", "largest share", "cost [m/s2]", "largest share")
-def error_bars(bench):
-    """speed and cost of transport with error bars (an hour, for the school)"""
-    for name, fish, of in (("swim", 0, "steady_"), ("fish_pressure", 0, "steady_"), ("school", 0, ""), ("school", 3, "")):
-        quantities = [f"{of}speed", f"{of}cost_of_transport"]
-        folder = os.path.join(bench.folder, f"{name}-error")
-        if not os.path.exists(folder):
-            bench.call("error", bench.case(name), "--of", quantities[0], "--of", quantities[1], "-q", "-o", folder)
-        study = open_study(os.path.join(folder, "study.nc"))
-        keys, is_choice = strings(study["key_name"]), study["key_is_choice"][:] > 0
-        cells = []
-        for quantity in quantities:
-            value, bar = float(study[f"stated_{quantity}"][fish]), float(study[f"bar_{quantity}"][fish])
-            part = np.where(is_choice, 0, study[f"part_{quantity}"][:, fish])
-            cells += [with_bar(value, bar), f"`{keys[np.argmax(part)]}`"]
-        yield name, strings(study["fish"])[fish], *cells
-
-
 # ---- are true errors below the bars? ----
+
+DEFAULTS = {
+    "swim": ("swim", []),
+    "swim, modulus 1e7": ("swim", ["fish[*].body.modulus=1e7"]),
+    "swim, frequency 2": ("swim", ["fish[*].wave.frequency=2"]),
+    "swim, force reactive": ("swim", ["fish[*].force=reactive"]),
+    "foil_static": ("foil_static", []),
+}
+
+
+@table("case", "quantity", "value", "bar / value", "error / value", "bar over error")
+def bars_of_defaults(bench):
+    """bars of 18 numbers against runs with all numerical keys refined together (10 minutes)"""
+    ratios = []
+    for name, (case, sets) in DEFAULTS.items():
+        of = ["steady_lift", "steady_deflection"] if case == "foil_static" else STEADY
+        path, folder = bench.case(case), os.path.join(bench.folder, "defaults")
+        words = [word for one in sets for word in ("--set", one)]
+        bench.call("error", path, "-q", "--force", "-o", folder, *words, *[word for q in of for word in ("--of", q)])
+        study = open_study(os.path.join(folder, "study.nc"))
+        refined = ["steady.multipliers=false"]
+        for k, key in enumerate(strings(study["key_name"])):
+            if study["key_levels"][k] < 2:
+                continue
+            finest = float(study["key_value"][k, 0])
+            is_grid = key.startswith("fish.") or key == "time.shedding_interval"
+            refined += finer(key, finest if is_grid else finest / 2 if key == "wake.lifetime" else finest * 10)
+        true = os.path.join(bench.folder, "true.nc")
+        bench.call("steady", path, "-q", "--force", "-o", true, *words, *[word for one in refined for word in ("--set", one)])
+        result = open_study(true)
+        for quantity in of:
+            value, bar = (float(study[f"{what}_{quantity}"][0]) for what in ("stated", "bar"))
+            error = abs(float(result[quantity][0]) - value)
+            ratios.append(bar / error)
+            yield (name, quantity.removeprefix("steady_"), f"{value:.5g}", f"{bar / abs(value):.2e}", f"{error / abs(value):.2e}",
+                   f"{ratios[-1]:.2f}")
+    yield f"{sum(ratio >= 1 for ratio in ratios)} of {len(ratios)} inside", "", "", "", "median", f"{np.median(ratios):.2f}"
+
 
 # Quantities of cases outside the choice of the rule; quantities of runs include the judges of an error study.
 STEADY = ["steady_speed", "steady_cost_of_transport", "steady_strouhal", "steady_efficiency"]
@@ -328,17 +342,17 @@ def coverage_cases():
         yield "reactive fish", STEADY, "[nodes]", text(25, 69, f"force: reactive, {body}")
     for body in ("body: {profile: uniform, modulus: 1e6}", "body: {modulus: 1e7}", "body: {}",
                  "wave: {frequency: 2}, body: {depth: 0.5, modulus: 5e6}"):
-        yield "fish with pressure", STEADY, "[nodes]", text(13, 69, f"force: pressure, pressure: {{span: infinite}}, {body}")
+        yield "fish with pressure", STEADY, "[nodes]", text(13, 97, f"force: pressure, pressure: {{span: infinite}}, {body}")
         yield "fish with pressure", STEADY, OTHERS, text(13, 33, f"force: pressure, pressure: {{span: infinite}}, {body}")
     stream = "fluid: {density: 1, velocity: [1, 0], viscosity: 0}\n"
     for heading, modulus in ((170, 2e5), (160, 4e5), (176, 8e5), (172, 1.5e5), (165, 6e5), (178, 1.2e5), (150, 1e6), (174, 3e5)):
         body = (f"force: pressure, pressure: {{span: infinite}}, start: {{heading: {heading}, speed: 0}}, {STILL}, motion: {{prescribed: head}}, "
                 f"body: {{profile: uniform, thickness: 0.05, depth: 1, density: 25.465, modulus: {modulus:g}}}")
-        yield "foil", ["steady_lift", "steady_deflection"], "[nodes]", text(13, 69, body, more=stream)
+        yield "foil", ["steady_lift", "steady_deflection"], "[nodes]", text(13, 97, body, more=stream)
         yield "foil", ["steady_lift", "steady_deflection"], "[sheet_points]", text(13, 33, body, more=stream)
     body = (f"force: pressure, pressure: {{span: infinite}}, start: {{speed: 1}}, {STILL}, motion: {{prescribed: head, heave: 0.05, frequency: 0.5}}, "
             "body: {profile: uniform, thickness: 0.05, depth: 1, density: 25.465, modulus: 814873, relaxation_time: 0.001}")
-    for nodes, sheet, keys in ((13, 69, "[nodes]"), (13, 33, OTHERS)):
+    for nodes, sheet, keys in ((13, 97, "[nodes]"), (13, 33, OTHERS)):
         yield ("foil", ["steady_thrust", "steady_fluid_power"], keys,
                text(nodes, sheet, body, more="fluid: {density: 1, viscosity: 0}\n"))
     for heave, frequency in ((0.175, 1), (0.05, 2)):
@@ -352,7 +366,7 @@ def coverage_cases():
         yield "two fish", RUN, OTHERS, text(25, 49, f"force: reactive, {body}", fish, 3)
     for force, nodes, sheet in (("force: reactive", 25, 49), ("force: pressure, pressure: {span: infinite}", 13, 33)):
         body = f"{force}, start: {{speed: 0.8}}, control: {{bias: 0.3}}"
-        yield "turn", RUN, "[nodes]", text(nodes, 69, body, end=3)
+        yield "turn", RUN, "[nodes]", text(nodes, 97, body, end=3)
         yield "turn", RUN, OTHERS, text(nodes, sheet, body, end=3)
 
 

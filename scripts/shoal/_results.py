@@ -38,7 +38,7 @@ def _wake_table(data):
     return data.drop_vars(["wake_x", "wake_circulation", "wake_birth"]).assign(table)
 
 
-OF_POINTS = ("stated_", "bar_", "lowest_", "highest_", "part_", "key_")  # beginnings of the names
+OF_POINTS = ("stated_", "bar_", "lowest_", "highest_", "part_", "shift_", "spread_", "key_")  # beginnings of the names
 OF_KEYS = ("key_name", "key_is_choice", "key_design_order")  # the same at all points
 
 

@@ -17,6 +17,10 @@ static const double least_part = 0.5, most_above = 0.5, most_change = 0.8;
  * level and otherwise; multiple of the noise below which differences have no meaning. */
 static const double safety = 1.25, without_finer = 1.5, with_finer = 2, of_noise = 3;
 
+/* How much finer than the stated level the finest level is, so that the levels between both suffice without an order;
+ * and for tolerances. */
+static const double enough_finer = 1.9, tenth = 9;
+
 /* Values that differ by less than this part of their size are equal: rounding hides the order. */
 static const double rounding = 1e-12;
 
@@ -103,23 +107,49 @@ struct convergence_result convergence_judge(const struct convergence_levels *lev
     }
     result.error = largest;
     result.verdict = CONVERGENCE_NONE;
-    if (!(largest > 0) || largest <= of_noise * noise * hypot(base[0], base[1])) return result;
+    const bool is_noise = !(largest > 0) || largest <= of_noise * noise * hypot(base[0], base[1]);
+    if (is_noise) {
+        // coarser levels have larger errors than the stated one
+        for (int i = 0; i < levels->base; i++)
+            result.error = i > 0 ? fmax(result.error, distance(f[i], base)) : distance(f[i], base);
+        result.spread = result.error;
+        return result;
+    }
 
     // Richardson's estimate with the order, at most the design order; fmin ignores NaN
     result.verdict = judge_differences(levels, n, f, &result, &result.first);
     const double p = fmin(result.order, levels->design_order), d_0 = distance(f[0], f[1]);
+    const double d_1 = n < 3 ? 0 : distance(f[1], f[2]), of_base = distance(f[0], base);
     const double richardson = safety * d_0 / (pow(levels->size[1] / levels->size[0], p) - 1);
+    result.shift = f[0][0] - base[0];
     if (result.verdict == CONVERGENCE_ACCEPTED) {
         result.finest_error = richardson;
-        result.error = richardson + distance(f[0], base);
-    } else if (result.verdict == CONVERGENCE_HIGH) {
-        result.finest_error = fmax(richardson, fmax(d_0, distance(f[1], f[2])));
-        result.error = fmax(result.finest_error, richardson + distance(f[0], base));
-    } else if (n < CONVERGENCE_LEVELS) {
-        // fewer levels span a narrow range
-        result.error *= levels->base == 0 ? without_finer : with_finer;
+        result.error = richardson + of_base;
+        result.shift += copysign(richardson / safety, f[0][0] - f[1][0]);
+        result.spread = result.error - fabs(result.shift);
+        return result;
     }
 
+    // without an order the finest levels count, if they are fine enough; otherwise all levels
+    const double finer = levels->size[levels->base] / levels->size[0];
+    const bool is_high = result.verdict == CONVERGENCE_HIGH;
+    result.spread = is_high ? fmax(richardson, fmax(d_0, d_1)) : fmax(d_0, d_1);
+    if (is_high) result.finest_error = result.spread;
+    const bool is_fine = finer > tenth || (finer > enough_finer && n == CONVERGENCE_LEVELS);
+    if (result.verdict == CONVERGENCE_OBJECTION || !is_fine) {
+        if (is_high) {
+            result.error = fmax(result.finest_error, richardson + of_base);
+        } else if (n < CONVERGENCE_LEVELS) {
+            // fewer levels span a narrow range
+            result.error *= levels->base == 0 ? without_finer : with_finer;
+        }
+        result.spread = fmax(result.spread, result.error - fabs(result.shift));
+        return result;
+    }
+
+    // a tolerance of a tenth needs no coarser one beside it
+    if (finer > tenth) result.spread = of_base;
+    result.error = of_base + result.spread;
     return result;
 }
 
@@ -401,19 +431,25 @@ struct convergence_levels convergence_study_levels(const struct error_study *stu
 static void judge_key(struct error_study *study, const struct member_file *members, struct error_study_key *key) {
     const struct case_values *const values = study->values;
     double size[ERROR_STUDY_LEVELS], value[ERROR_STUDY_LEVELS][2] = {{0}};
-    const struct convergence_levels levels = convergence_study_levels(study, key, size);
+    struct convergence_levels levels = convergence_study_levels(study, key, size);
     const int stated = key->member[key->stated];
 
-    // object to an interval for which the sheet has too few points: doc/model.md, section 8
+    // object to an interval for which the sheet has too few points, and leave out levels with too few points for the
+    // interval: doc/model.md, section 8
     const bool is_interval = strcmp(key->row->path, "time.shedding_interval") == 0;
-    const bool has_sheet = is_interval && values->school.wake.shedding == SHEDDING_SHEET;
-    if (has_sheet) *key->objection = '\0';
-    for (int f = 0; f < study->n_fish && has_sheet && !*key->objection; f++) {
+    const bool are_points = strcmp(key->row->path, "fish.sheet_points") == 0;
+    const bool is_of_sheet = values->school.wake.shedding == SHEDDING_SHEET;
+    if (is_interval && is_of_sheet) *key->objection = '\0';
+    for (int f = 0; f < study->n_fish && (is_interval || are_points) && is_of_sheet && !*key->objection; f++) {
         const struct fish_parameters *const fish = &values->school.fish[f];
         const double speed = member_file_number(&members[study->base], "speed", f);
         const double needed = 1 + 3.2 / sqrt(fabs(speed) * values->school.shedding_interval / fish->length);
-        const double most = 1000;  // a fish that needs more sheet points does not swim
-        if (!(fish->sheet_points < needed) || needed > most) continue;
+        const double most = 1000;       // a fish that needs more sheet points does not swim
+        const double of_warning = 0.9;  // a run with this part of them has the warning
+        const double least = 1 + of_warning * (needed - 1);
+        while (are_points && levels.n > 2 && levels.n > key->stated + 1 && key->value[levels.n - 1] < least) levels.n--;
+        key->n_left_out = key->n_levels - levels.n;
+        if (are_points || !(fish->sheet_points < needed) || needed > most) continue;
         snprintf(key->objection, CONVERGENCE_BYTES, "%.60s needs %.0f sheet_points for this interval", fish->name,
                  ceil(needed));
     }
@@ -486,17 +522,21 @@ void convergence_study_judge(struct error_study *study, const struct member_file
     for (int q = 0; q < study->n_asked; q++) {
         for (int f = 0; f < study->n_fish; f++) {
             const int place = error_plan_place(study, q, f);
-            double sum = 0, moved = value_of(study, members, study->base, q, f);
+            double sum = 0, shift = 0, spread = 0, moved = value_of(study, members, study->base, q, f);
             for (int k = 0; k < study->n_keys; k++) {
                 const struct error_study_key *const key = &study->key[k];
                 if (!is_error(key)) continue;
                 sum += key->part[place].error;
+                shift += key->part[place].shift;
+                spread += key->part[place].spread;
                 moved += value_of(study, members, key->member[key->stated], q, f) -
                          value_of(study, members, key->member[key->first_stated], q, f);
             }
             study->value[place] = value_of(study, members, study->stated, q, f);
             study->together[place] = n_moved > 1 ? fabs(study->value[place] - moved) : 0;
-            study->error[place] = sum + study->together[place];
+            study->parts[place] = sum;
+            study->error[place] = fmin(sum, fabs(shift) + spread) + study->together[place];
+            if (isnan(sum)) study->error[place] = NAN;
 
             // the lowest and the highest value with other choices of the model: the stated value plus the change of the
             // case by the choice
@@ -605,12 +645,23 @@ struct error_study_next convergence_study_next(struct error_study *study, const 
     if (isnan(next.value)) return next;
     next.cost = fmax(1, next.cost);  // short runs have noisy times
 
-    // predicted errors: of the worst quantity by the refined key, and the largest of all keys
+    // predicted errors: of the worst quantity by the refined key, and the largest of all keys; shift and spread of the
+    // refined key fall together
     next.part = relative(study, next.place, next_error(study, members, key, next.value, next.place));
     next.sum = isnan(next.part) ? NAN : 0;
     for (int place = 0; place < study->n_asked * study->n_fish; place++) {
         const double now = key->part[place].error, then = next_error(study, members, key, next.value, place);
-        const double sum = relative(study, place, study->error[place] + (isnan(then) ? 0 : then - now));
+        const double part = isnan(then) || !(now > 0) ? 1 : then / now;
+        double error = 0, shift = 0, spread = 0;
+        for (int k = 0; k < study->n_keys; k++) {
+            if (!is_error(&study->key[k])) continue;
+            const struct convergence_result *const of = &study->key[k].part[place];
+            const double factor = k == next.key ? part : 1;
+            error += factor * of->error;
+            shift += factor * of->shift;
+            spread += factor * of->spread;
+        }
+        const double sum = relative(study, place, fmin(error, fabs(shift) + spread) + study->together[place]);
         if (sum > next.sum) next.sum = sum;
     }
     return next;
@@ -710,5 +761,9 @@ void convergence_study_say_cost(const struct error_study *study, char words[CONV
         if (length >= CONVERGENCE_BYTES) return;
     }
 
+    if (length == 0) {
+        snprintf(words, CONVERGENCE_BYTES, "the interaction of the refined keys exceeds it: start from finer values");
+        return;
+    }
     snprintf(words + length, (size_t)(CONVERGENCE_BYTES - length), ": about %.2g times the CPU time", cost);
 }

@@ -9,9 +9,15 @@
  *
  * A sequence is accepted if the differences have one sign, if p and p' are at least half of the design order of the key
  * and agree to 0.8, and if p is at most 0.5 above the design order. Then |f_0 - limit| <= 1.25
- * d_0/((h_1/h_0)^min(p, design) - 1), to which |f_0 - f_base| is added. Any other sequence is flagged: the error is the
- * largest |f_i - f_base|, doubled for fewer than four levels. If p is too high, d_0 is small by accident: the error is
- * the larger of d_0 and d_1, and at least the error of an accepted sequence. */
+ * d_0/((h_1/h_0)^min(p, design) - 1), to which |f_0 - f_base| is added. Any other sequence is flagged. If the finest of
+ * four levels is about twice as fine as the stated one, the error is |f_0 - f_base| plus the larger of d_0 and d_1;
+ * otherwise the largest |f_i - f_base|, doubled for fewer than four levels. If p is too high, d_0 is small by
+ * accident: the error is at least that of an accepted sequence.
+ *
+ * The error of a key has a known sign: the limit is expected at f_base + shift +- spread. An accepted sequence has the
+ * shift of Richardson's extrapolation, any other that of the finest level, with a spread of at least d_0 and d_1.
+ * Shifts of several keys add with their signs, spreads without: |sum of shifts| + sum of spreads is the error of the
+ * value, but no more than the sum of the errors. */
 #ifndef CONVERGENCE_H
 #define CONVERGENCE_H
 
@@ -53,6 +59,7 @@ struct convergence_result {
     int first;                  /* the flag is that of the three levels from this level on */
     double error;               /* of the value at the base, in the unit of the quantity */
     double finest_error;        /* of the value at the finest level; NaN: unknown */
+    double shift, spread;       /* of a number: the limit is the value at the base + shift +- spread */
     double order, coarse_order; /* p and p'; NaN: too few levels, or equal ones */
 };
 

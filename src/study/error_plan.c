@@ -242,6 +242,31 @@ static bool is_valid_level(struct error_study *study, int k, double value) {
     return status == STATUS_OK;
 }
 
+/* Fewest events in a beat: below, a run has the warning "few events". */
+static const double fewest_events = 20;
+
+/* Whether a level of a key is a valid case whose run would have no warning of few events or few nodes. A case with such
+ * a warning has it at most levels. */
+static bool is_good_level(struct error_study *study, int k, double value) {
+    const struct error_study_key *const key = &study->key[k];
+    if (!is_valid_level(study, k, value)) return false;
+    if (*key->objection) return true;
+    if (strcmp(key->row->path, "time.shedding_interval") == 0) {
+        const double stated = key->value[key->first_stated];
+        return !(study->beat < fewest_events * value * (1 - 1e-9)) || study->beat < fewest_events * stated;
+    }
+    if (strcmp(key->row->path, "fish.nodes") != 0 || !(study->values->school.fluid.density > 0)) return true;
+
+    // two edges are at most as long as the tail bends over
+    for (int f = 0; f < study->n_fish; f++) {
+        if (!(study->bending[f] > 0)) continue;
+        const double part = value / plan_number_of(study->values, "fish.nodes", 0);
+        const double edges = round(part * plan_number_of(study->values, "fish.nodes", f)) - 1;
+        if (2 * study->values->school.fish[f].length / edges > study->bending[f]) return false;
+    }
+    return true;
+}
+
 // ---- levels
 
 static bool is_finer(const struct sweep_error_key *row, double a, double b) {
@@ -280,7 +305,7 @@ double error_plan_find_level(struct error_study *study, int k, double from, doub
     const double whole = is_step ? values->school.shedding_interval : run;
     const double target = is_interval || is_step ? whole / (from * factor) : from * factor;
     if (key->row->kind != SWEEP_POINTS && !is_interval && !is_step) {
-        return is_valid_level(study, k, target) ? target : NAN;
+        return is_good_level(study, k, target) ? target : NAN;
     }
 
     // integers around the target
@@ -290,7 +315,7 @@ double error_plan_find_level(struct error_study *study, int k, double from, doub
             const bool is_same = !(fabs(value - from) > 1e-9 * from);
             if (n < 1 || is_same || is_finer(key->row, value, from) != is_finer(key->row, from * factor, from))
                 continue;
-            if (is_valid_level(study, k, value)) return value;
+            if (is_good_level(study, k, value)) return value;
         }
         // other numbers of points or steps would be refused, too
         if (!is_interval) return NAN;
@@ -323,9 +348,15 @@ static enum status choose_levels(struct error_study *study) {
         for (int i = 0; i < row->n_levels && !given; i++) {
             if (is_valid_level(study, k, row->level[i])) error_plan_insert(key, row->level[i]);
         }
+        // half the nodes do not resolve the wave of most bodies: with finer levels one coarser level suffices
+        const bool are_nodes = strcmp(row->path, "fish.nodes") == 0;
         int n_missing = 0, n_finer = row->kind == SWEEP_MODEL || error->confirm;
         for (int i = 0; i < 2 && !given; i++) {
             if (!(row->coarser[i] > 0)) continue;
+            if (are_nodes && error->confirm && i == 1) {
+                n_missing++;
+                continue;
+            }
             const double level = error_plan_find_level(study, k, base, row->coarser[i]);
             if (!isnan(level)) error_plan_insert(key, level);
             n_missing += isnan(level);
@@ -432,6 +463,7 @@ static void add_all_columns(struct error_study *study) {
 
 /* Fill the objections that follow from the case alone. */
 static void list_objections(struct error_study *study, const struct school *school) {
+    NEW(study->sweep->arena, study->bending, school->n_fish);
     for (int k = 0; k < study->n_keys; k++) {
         struct error_study_key *const key = &study->key[k];
         for (int f = 0; f < school->n_fish && !*key->objection; f++) {
@@ -446,6 +478,7 @@ static void list_objections(struct error_study *study, const struct school *scho
                 continue;
             }
             const double bending = warnings_bending_length(fish);
+            study->bending[f] = isfinite(bending) ? bending : 0;
             if (!(2 * fish->edge_length > bending)) continue;
             snprintf(key->objection, CONVERGENCE_BYTES,
                      "two edges of %.60s are longer than its tail bends over, %.2g m", fish->name, bending);
@@ -485,6 +518,7 @@ static enum status choose_quantities(struct error_study *study) {
     NEW(study->sweep->arena, study->value, n);
     NEW(study->sweep->arena, study->error, n);
     NEW(study->sweep->arena, study->together, n);
+    NEW(study->sweep->arena, study->parts, n);
     NEW(study->sweep->arena, study->shared, n);
     NEW(study->sweep->arena, study->lowest, n);
     NEW(study->sweep->arena, study->highest, n);
@@ -697,6 +731,7 @@ static struct error_sweep *create_comparison(struct error_sweep *sweep, enum err
         NEW(arena, to->value, n);
         NEW(arena, to->error, n);
         NEW(arena, to->together, n);
+        NEW(arena, to->parts, n);
         NEW(arena, to->shared, n);
         NEW(arena, to->lowest, n);
         NEW(arena, to->highest, n);

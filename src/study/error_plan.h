@@ -44,6 +44,7 @@ struct error_study_key {
     int twin[ERROR_STUDY_LEVELS];      /* the member to compare with, in a comparison */
     int first_stated;                  /* level of the case, before any refinement */
     int n_added;                       /* levels added for `within` */
+    int n_left_out;                    /* coarsest levels that the judgement leaves out: too few sheet points */
     char objection[CONVERGENCE_BYTES]; /* reason to distrust any order, or ""; n_levels 1: reason for not varying */
     double cost_exponent;              /* exponent of the resolution in the wall time */
     struct convergence_result *part;   /* of each quantity; for a choice of the model: the change (n_asked, n_fish) */
@@ -72,8 +73,9 @@ struct error_study {
     bool is_against;                        /* the other case */
     bool is_steady, is_static;              /* steady states; equilibria, without a beat */
     int n_fish;
-    double beat;                          /* s; 0: none */
-    int n_asked;                          /* requested quantities */
+    double beat;     /* s; 0: none */
+    double *bending; /* length over which a tail bends at its frequency, m; 0: it has none    (n_fish) */
+    int n_asked;     /* requested quantities */
     int quantity[ERROR_STUDY_QUANTITIES]; /* numbers of member_file.h */
     int n_keys;
     struct error_study_key key[SWEEP_N_ERROR_KEYS];
@@ -81,6 +83,7 @@ struct error_study {
     int stated;            /* the member of the stated value */
     double *value, *error; /* stated values, and their errors; NaN: unknown   (n_asked, n_fish) */
     double *together;      /* part of the error: interaction of refined keys  (n_asked, n_fish) */
+    double *parts;  /* the errors of all keys, without regard to their signs                        (n_asked, n_fish) */
     double *shared; /* part of the error: other keys, from the full points                         (n_asked, n_fish) */
     struct error_study_model *lowest,
         *highest;    /* values with other choices of the model            (n_asked, n_fish) */

@@ -43,6 +43,8 @@ enum {
     LOWEST,
     HIGHEST,
     PART,
+    SHIFT,
+    SPREAD,
     KEY_ORDER,
     KEY_FLAG,
     N_ROWS
@@ -91,11 +93,14 @@ static const struct row {
     {"key_value", of_key, NETCDF_DOUBLE, IN_ERRORS, P | K | KL, "value of the key at each level, from fine to coarse"},
     {"key_member", "1", NETCDF_INT, IN_ERRORS, P | K | KL, "member of each level; -1: none"},
     {"stated_%s", NULL, NETCDF_DOUBLE, BY_ERROR, P | F, "stated value of %s"},
-    {"bar_%s", NULL, NETCDF_DOUBLE, BY_ERROR, P | F, "error of the stated value of %s: the sum over the keys"},
+    {"bar_%s", NULL, NETCDF_DOUBLE, BY_ERROR, P | F, "error of the stated value of %s, of all keys"},
     {"lowest_%s", NULL, NETCDF_DOUBLE, BY_ERROR, P | F, "lowest %s of other models; NaN: none"},
     {"highest_%s", NULL, NETCDF_DOUBLE, BY_ERROR, P | F, "highest %s of other models"},
     {"part_%s", NULL, NETCDF_DOUBLE, BY_ERROR, P | K | F,
      "error of %s by each key, or change by a choice of the model"},
+    {"shift_%s", NULL, NETCDF_DOUBLE, BY_ERROR, P | K | F,
+     "change of %s from the stated value to where the levels of each key lead"},
+    {"spread_%s", NULL, NETCDF_DOUBLE, BY_ERROR, P | K | F, "error of shift_%s"},
     {"key_order_%s", "1", NETCDF_DOUBLE, BY_ERROR, P | K | F, "observed order of %s in each key"},
     {"key_flag_%s", "", NETCDF_TEXT, BY_ERROR, P | K | F | T,
      "reason why the levels of each key give no order of %s, or empty"},
@@ -305,6 +310,8 @@ static struct value error_value(const struct contents *contents, const struct va
         case KEY_VALUE: return (struct value){.number = i[1] < n_levels ? key->value[i[1]] : NAN};
         case KEY_MEMBER: return (struct value){.number = i[1] < n_levels ? key->member[i[1]] : -1};
         case PART: return (struct value){.number = n_levels > 1 ? key->part[place].error : NAN};
+        case SHIFT: return (struct value){.number = n_levels > 1 ? key->part[place].shift : NAN};
+        case SPREAD: return (struct value){.number = n_levels > 1 ? key->part[place].spread : NAN};
         case KEY_ORDER: return (struct value){.number = n_levels > 1 ? key->part[place].order : NAN};
         default:
             *text = '\0';

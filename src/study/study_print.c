@@ -701,14 +701,25 @@ static void print_shares(const struct error_study *study, const struct error_stu
                                                                   : "flagged");
             }
             table_number(table, "%.2f", 100 * part->error / fabs(study->value[place]));
-            table_number(table, "%.0f", study->error[place] > 0 ? 100 * part->error / study->error[place] : 0);
+            table_number(table, "%.0f", study->parts[place] > 0 ? 100 * part->error / study->parts[place] : 0);
         }
         table_cell(table, key->n_levels > 1 ? "%d levels" : "", key->n_levels < 4 ? key->n_levels : 4);
         table_cell(table, "%s", k == next->key ? next_words(study, next) : "");
         table_row(table);
     }
 
+    // what the errors of opposite signs take away from each other
+    bool cancel = false;
+    double *cancelled;
+    NEW(study->sweep->arena, cancelled, study->n_asked * study->n_fish);
+    for (int place = 0; place < study->n_asked * study->n_fish; place++) {
+        const double sum = study->parts[place] + study->together[place] + study->shared[place];
+        cancelled[place] = study->error[place] - sum;
+        cancel |= cancelled[place] < -1e-3 * sum;
+    }
+
     if (n_moved > 1) sum_row(table, study, "together", study->together, f);
+    if (cancel) sum_row(table, study, "opposite signs", cancelled, f);
     sum_row(table, study, "sum", study->error, f);
     table_print(table, stream);
 }
@@ -745,6 +756,10 @@ static void print_reasons(const struct error_study *study, const struct member_f
         const bool is_known = study->relation != ERROR_VALUE && study->point->key[k].n_levels == 1;
         if (key->n_levels == 1 && !is_known) fprintf(stream, "not varied: %s: %s\n", key->row->path, key->objection);
         if (key->n_levels == 1 || key->row->kind == SWEEP_MODEL) continue;
+        if (key->n_left_out > 0) {
+            fprintf(stream, "left out: %s %.4g%s: too few for the shedding_interval\n", key->row->path,
+                    key->value[key->n_levels - key->n_left_out], key->n_left_out > 1 ? " and coarser" : "");
+        }
         for (int place = 0; place < study->n_asked * study->n_fish; place++) {
             const int q = place / study->n_fish, f = place % study->n_fish;
             const struct convergence_result *const part = &key->part[place];

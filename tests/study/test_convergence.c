@@ -84,10 +84,10 @@ TEST(a_stated_value_beyond_the_judged_levels_counts_with_its_distance) {
     verdict_is(result.verdict, CONVERGENCE_ACCEPTED);
     NEAR(result.error, 1.25 * 0.3 * 0.01 + 0.3 * (10.24 - 0.01), 0, 1e-9);
 
-    // flagged levels: the largest difference from the stated value
+    // flagged levels: the distance from the finest one, and the larger of the two finest differences
     turning[1] = 1.9;
     verdict_is(judge(&key, turning, 1e-9).verdict, CONVERGENCE_TURNS);
-    NEAR(judge(&key, turning, 1e-9).error, 2 + 0.3 * 10.24 - 1.9, 0, 1e-12);
+    NEAR(judge(&key, turning, 1e-9).error, 0.3 * (10.24 - 0.01) + 0.3 * 0.16 + 0.1, 0, 1e-12);
 }
 
 /* Half an order above the design order is accepted, with the design order; more is an accident of the finest
@@ -109,8 +109,8 @@ TEST(an_order_far_above_the_design_order_is_flagged) {
     NEAR(result.error, 0.842639 - 0.835444, 1e-12, 0);
     assert_string_equal(reason, "the order is more than 0.5 above the design order, 2: 6.6 from 13 to 49");
 
-    // a coarser stated value adds its distance from the finest level to the estimate of the design order
-    NEAR(judge(&coarse, speed, 1e-7).error, 0.842714 - 0.794489 + 1.25 * 0.000075 / 3, 1e-9, 0);
+    // a coarser stated value adds its distance from the finest level
+    NEAR(judge(&coarse, speed, 1e-7).error, 0.842714 - 0.794489 + 0.842639 - 0.835444, 1e-9, 0);
 
     // equal finest levels have an infinite order
     const double equal[] = {1, 1, 1.1, 1.5};
@@ -180,11 +180,43 @@ TEST(differences_below_the_noise_are_none) {
     const double speed[] = {0.93640, 0.93641, 0.93639};
     const struct convergence_result result = judge(&key, speed, 2.5e-5);
     verdict_is(result.verdict, CONVERGENCE_NONE);
-    NEAR(result.error, 2e-5, 0, 1e-6);
+    NEAR(result.error, 1e-5, 0, 1e-6);  // from the finer level: the coarser one is no error of the stated one
     verdict_is(judge(&key, speed, 1e-6).verdict, CONVERGENCE_TURNS);
+    NEAR(judge(&key, speed, 1e-6).error, 2e-5, 0, 1e-6);  // a tenth of the tolerance, doubled
     // a difference of 2e-5 in 0.94 against three times the noise
     verdict_is(judge(&key, speed, 0.75e-5).verdict, CONVERGENCE_NONE);
     verdict_is(judge(&key, speed, 0.69e-5).verdict, CONVERGENCE_TURNS);
+}
+
+/* f = 2 + 0.3 h^2 leads to 2, from any stated level; Richardson's estimate has an uncertainty of a quarter. */
+TEST(an_accepted_sequence_knows_where_it_leads) {
+    for (int base = 0; base < 4; base++) {
+        const struct key key = {4, base, {0.05, 0.1, 0.2, 0.4}, 2, NULL};
+        double value[4];
+        for (int i = 0; i < 4; i++) value[i] = 2 + 0.3 * key.level[i] * key.level[i];
+        const struct convergence_result result = judge(&key, value, 1e-9);
+        NEAR(value[base] + result.shift, 2, 1e-12, 0);
+        NEAR(result.spread, 0.25 * 0.3 * 0.0025, 1e-12, 0);
+        NEAR(fabs(result.shift) + result.spread, result.error, 1e-12, 0);
+    }
+}
+
+/* Without an order the value is expected at the finest level, to the differences of the finest levels. */
+TEST(a_flagged_sequence_leads_to_its_finest_level) {
+    const double value[] = {1.03, 1.01, 1.04, 1.2};
+    const struct key fine = {4, 2, {0.01, 0.02, 0.04, 0.08}, 1, NULL},
+                     finest = {4, 0, {0.01, 0.02, 0.04, 0.08}, 1, NULL};
+    struct convergence_result result = judge(&fine, value, 1e-9);
+    verdict_is(result.verdict, CONVERGENCE_TURNS);
+    NEAR(result.shift, -0.01, 1e-12, 0);
+    NEAR(result.spread, 0.03, 1e-12, 0);
+    NEAR(result.error, 0.04, 1e-12, 0);
+
+    // without a finer level every level counts
+    result = judge(&finest, value, 1e-9);
+    NEAR(result.shift, 0, 0, 0);
+    NEAR(result.error, 0.17, 1e-12, 0);
+    NEAR(result.spread, 0.17, 1e-12, 0);
 }
 
 TEST(orders_decide) {
