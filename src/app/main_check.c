@@ -13,6 +13,7 @@
 #include "run/record.h"
 #include "run/simulate.h"
 #include "school/warnings.h"
+#include "steady/steady.h"
 
 /* CPU time of the command, and the part for estimates [s]; the remainder is for simulate_start. */
 static const double time_limit = 0.4, patience = 0.25;
@@ -26,7 +27,8 @@ struct checked {
     int n_checked;          /* members whose cases have been checked, a sample of a long sweep */
     int n_fish, n_unknowns; /* of the last school; n_unknowns 0: no school yet */
     int n_estimated, n_failed, n_warned[N_WARNINGS], first_warned[N_WARNINGS], first_failed;
-    double seconds, bytes; /* sum and maximum over the estimated members */
+    int n_refused, first_refused; /* members that can have no steady state */
+    double seconds, bytes;        /* sum and maximum over the estimated members */
     char failure[512], warning[N_WARNINGS][WARNING_BYTES];
 };
 
@@ -142,6 +144,24 @@ enum status main_check(const struct request *request) {
         const enum status status = check_start(&checked, m, &member);
         case_free(&member);
         TRY(status);
+    }
+
+    // every member of a search for steady states
+    for (int m = 0; checked.is_study && sweep_is_steady(&values) && m < n; m++) {
+        struct case_values member;
+        TRY(case_member(&member, &values, m));
+        const enum status status = steady_refuse(&member);
+        case_free(&member);
+        if (status == STATUS_OK) continue;
+        if (status != STATUS_CASE) return status;
+        if (checked.n_refused++ > 0) continue;
+        checked.first_refused = m;
+        snprintf(checked.failure, sizeof checked.failure, "%s", status_message());
+    }
+    if (checked.n_refused > 0) {
+        return status_fail(STATUS_CASE, "%s: %d of %d members cannot have a steady state; member %d (%s): %s",
+                           request->positional, checked.n_refused, n, checked.first_refused,
+                           sweep_member_text(request->arena, &values, checked.first_refused), checked.failure);
     }
 
     // an existing output file is no error of the case: only note

@@ -9,6 +9,7 @@
 
 #include "base/arena.h"
 #include "base/mathematics.h"
+#include "fish/fish_school.h"
 #include "result/durable.h"
 #include "result/target.h"
 #include "run/record.h"
@@ -215,6 +216,25 @@ static enum status steady_find(struct run *run, bool is_static) {
     return write_beats(run);
 }
 
+static enum status refuse_school(const struct school *school) {
+    if (school->gust_profile != GUST_UNIFORM && fabs(school->gust[0]) + fabs(school->gust[1]) > 0) {
+        return status_fail(STATUS_CASE,
+                           "a gust that travels past the fish has no steady state: run the case in time, or set "
+                           "fluid.gust.profile to uniform");
+    }
+    return steady_static_applies(school) ? steady_static_refuse(school) : steady_map_refuse(school);
+}
+
+enum status steady_refuse(const struct case_values *values) {
+    ARENA(arena, NULL, "the school of a case");
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    struct school *school;
+    TRY(fish_school_create(arena, &school, &values->school));
+    const enum status status = refuse_school(school);
+    fish_school_free(school);
+    return status;
+}
+
 static enum status find_and_write(struct run *run) {
     MEMORY_BOUNDARY(STATUS_MEMORY);
     const struct steady_options *const options = run->options;
@@ -234,14 +254,9 @@ static enum status find_and_write(struct run *run) {
     run->simulation->stop = options->stop;
     run->simulation->trace = options->trace;
     const struct school *const school = run->simulation->school;
-    if (school->gust_profile != GUST_UNIFORM && fabs(school->gust[0]) + fabs(school->gust[1]) > 0) {
-        return status_fail(STATUS_CASE,
-                           "a gust that travels past the fish has no steady state: run the case in time, or set "
-                           "fluid.gust.profile to uniform");
-    }
-    const bool is_static = steady_static_applies(run->simulation->school);
-    TRY(is_static ? steady_static_refuse(run->simulation->school)
-                  : steady_problem_create(&run->problem, &run->values->steady, run->simulation));
+    const bool is_static = steady_static_applies(school);
+    TRY(refuse_school(school));
+    if (!is_static) TRY(steady_problem_create(&run->problem, &run->values->steady, run->simulation));
     run->problem.progress = report_progress;
     run->problem.data = run;
     const int n_fish = run->simulation->school->n_fish, n = STEADY_QUANTITIES * n_fish;

@@ -32,6 +32,10 @@ struct steady_options {
     const volatile sig_atomic_t *stop; /* a nonzero value stops the search; may be NULL */
 };
 
+/* STATUS_CASE, with the reason and the remedy, if a case can have no steady state, without a run: several frequencies,
+ * events or gusts that do not divide the beat, bodies without an equilibrium. */
+enum status steady_refuse(const struct case_values *values);
+
 /* Find the steady state of a case and write the result file. If the search fails with STATUS_SOLVER, STATUS_CONTACT or
  * STATUS_STOPPED, the file contains the reason and no rows, unless an earlier result exists, which is kept. Without a
  * file: STATUS_CASE if the case can have no steady state, STATUS_FILE, STATUS_MEMORY. */

@@ -16,44 +16,57 @@ enum steady_freedom steady_map_freedom(const struct fish *fish) {
     return fish->motion.is_held ? STEADY_HELD : STEADY_SURGES;
 }
 
-enum status steady_map_create(struct steady_map *map, struct simulation *simulation) {
-    const struct school *const school = simulation->school;
-    const struct fish *first = NULL;
-    *map = (struct steady_map){.simulation = simulation, .steered = -1};
-    NEW(simulation->arena, map->last, school->n_fish);
-    NEW(simulation->arena, map->before, school->n_fish);
+/* The first fish that beats; NULL: none. */
+static const struct fish *first_beating(const struct school *school) {
+    for (int f = 0; f < school->n_fish; f++) {
+        if (school->fish[f].period > 0) return &school->fish[f];
+    }
+    return NULL;
+}
+
+enum status steady_map_refuse(const struct school *school) {
+    const struct fish *const first = first_beating(school);
+    if (!first) return status_fail(STATUS_CASE, "no fish beats, so there is no beat to repeat");
 
     // the common beat period of all fish
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
-        if (fish->control.law != CONTROL_NONE && map->steered < 0) map->steered = f;
-        if (fish->period <= 0) continue;
-        if (!first) first = fish;
-        if (fabs(fish->period - first->period) <= 1e-9 * first->period) continue;
+        if (fish->period <= 0 || fabs(fish->period - first->period) <= 1e-9 * first->period) continue;
         return status_fail(STATUS_CASE,
                            "%s beats %g times per second and %s beats %g times: a periodic state needs one frequency",
                            first->name, 1 / first->period, fish->name, 1 / fish->period);
     }
 
     // an integer number of events and gusts in a beat
-    if (!first) return status_fail(STATUS_CASE, "no fish beats, so there is no beat to repeat");
-    map->period = first->period;
-    const double events = map->period / school->interval;
-    map->events = lround(events);
-    if (map->events < 1 || !(fabs(events - (double)map->events) <= 1e-6 * events)) {
+    const double period = first->period, events = period / school->interval, whole = round(events);
+    if (whole < 1 || !(fabs(events - whole) <= 1e-6 * events)) {
         return status_fail(STATUS_CASE,
                            "a beat of %.10g s has %.6g events, not an integer: set time.shedding_interval to %.10g, "
                            "and time.end and time.output_interval to multiples of it",
-                           map->period, events, map->period / ceil(events));
+                           period, events, period / ceil(events));
     }
 
-    const double gusts = school->gust_omega * map->period / (2 * M_PI);
+    const double gusts = school->gust_omega * period / (2 * M_PI);
     const bool has_gust = fabs(school->gust[0]) + fabs(school->gust[1]) > 0;
     if (!has_gust || fabs(gusts - nearbyint(gusts)) <= 1e-9 * gusts) return STATUS_OK;
     return status_fail(STATUS_CASE,
                        "a beat has %g gusts, not an integer: set fluid.gust.frequency to a multiple of the frequency "
                        "of the beat",
                        gusts);
+}
+
+enum status steady_map_create(struct steady_map *map, struct simulation *simulation) {
+    const struct school *const school = simulation->school;
+    *map = (struct steady_map){.simulation = simulation, .steered = -1};
+    NEW(simulation->arena, map->last, school->n_fish);
+    NEW(simulation->arena, map->before, school->n_fish);
+    for (int f = 0; f < school->n_fish && map->steered < 0; f++) {
+        if (school->fish[f].control.law != CONTROL_NONE) map->steered = f;
+    }
+    TRY(steady_map_refuse(school));
+    map->period = first_beating(school)->period;
+    map->events = lround(map->period / school->interval);
+    return STATUS_OK;
 }
 
 // ---- one beat

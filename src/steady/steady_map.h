@@ -57,8 +57,10 @@ struct steady_map {
     struct steady_beat *last, *before; /* the last two beats                                  (n_fish) */
 };
 
-/* Create the map of a simulation, in the arena of the simulation. STATUS_CASE, with the remedy in the message, if the
- * whole case does not repeat with one beat. */
+/* STATUS_CASE, with the reason and the remedy, if the whole case does not repeat with one beat. */
+enum status steady_map_refuse(const struct school *school);
+
+/* Create the map of a simulation, in the arena of the simulation. Fails as steady_map_refuse. */
 enum status steady_map_create(struct steady_map *map, struct simulation *simulation);
 
 /* Advance by one beat; call row, unless NULL, after each event. Fails as simulate_step or row. */

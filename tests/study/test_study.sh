@@ -13,6 +13,20 @@ changed() {
     stat -c %y "$1"
 }
 
+# ---- a search for a steady state needs beats of whole events
+
+cat >beats.yaml <<'end'
+format: 1
+time: {end: 1, shedding_interval: 0.05}
+fish: [{force: reactive, nodes: 9}]
+sweep: [{key: "fish[*].wave.frequency", values: [1, 1.1, 2, 1.3], steady: true}]
+end
+run check beats.yaml
+check members_without_a_steady_state_are_found_before_a_run eval 'test "$code" = 2 &&
+    has err "beats.yaml: 2 of 4 members cannot have a steady state; member 1 (fish[*].wave.frequency=1.1): a beat of 0.9090909091 s has 18.1818 events"'
+run check beats.yaml --set 'sweep=[{key: "fish[*].wave.frequency", values: [1, 2], steady: true}]'
+check all_others_can_run test "$code" = 0
+
 # ---- a study from begin to end
 
 cat >swimmer.yaml <<'end'
