@@ -81,6 +81,9 @@ stopped two_threads USR1 swimmer.yaml --threads 2 --set output.precision=single
 stopped impulsive INT swimmer.yaml --set wake.shedding=impulsive --set time.shedding_interval=0.02
 stopped finite_span TERM swimmer.yaml --set 'fish[*].force=pressure' --set 'fish[*].pressure.span=finite'
 stopped pressure TERM swimmer.yaml --set 'fish[*].force=pressure' --set 'fish[*].pressure.span=infinite' --set 'fish[*].pressure.suction_limit=0.01'
+stopped dropped TERM swimmer.yaml --set 'fish[*].start.speed=2' --set time.end=1.6
+check "dropped: a third of the 161 markers of each fish is gone" \
+    /usr/bin/python3 -c 'import sys, netCDF4; sys.exit(not 50 < netCDF4.Dataset("run.nc")["wake_count"][-1].max() < 107)'
 stopped explicit TERM swimmer.yaml --set solver.method=dormand_prince --set time.checkpoint_interval=0.25
 
 # ---- complete and incomplete results
