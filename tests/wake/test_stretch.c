@@ -278,7 +278,7 @@ static double moved_by_dropping(const char *text, double end, double *saved) {
     return most;
 }
 
-#define RUN "time: {end: 4, shedding_interval: 0.02}\nsolver: {rtol: 1.0e-6}\n"
+#define RUN "time: {end: 8, shedding_interval: 0.02}\nsolver: {rtol: 1.0e-6}\n"
 #define SWIM(span) "defaults: {fish: {nodes: 13, start: {speed: 0.8}, pressure: {span: " span "}}}\n"
 
 TEST(dropping_moves_bodies_by_less_than_other_errors) {
@@ -291,6 +291,7 @@ TEST(dropping_moves_bodies_by_less_than_other_errors) {
         {"a follower", "fish: [{}, {start: {position: [2.5, 0.1]}}]\n", 3.5, {4e-5, 2e-5}},
         {"in antiphase", "fish: [{}, {start: {position: [0, 0.4]}, wave: {phase: 180}}]\n", 3, {1e-5, 1e-5}},
         {"a wall", "fluid: {walls: [-0.3]}\nfish: [{}]\n", 3, {5e-6, 5e-6}},
+        {"a U-turn", "fish: [{control: {law: heading, desired_heading: 0}}]\n", 7, {5e-6, 5e-6}},
     };
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
         for (int k = 0; k < 2; k++) {
