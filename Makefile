@@ -159,7 +159,7 @@ test: deps  ## install what is missing, build, test the program (minutes)
 	@$(parallel) tests
 	@scripts/run-tests.sh $(program) $(c_tests) $(shell_tests)
 
-test-extra: deps  ## test documents, figures, site, pages in a browser, files of VTK, manual, packages, faults, classical results
+test-extra: deps  ## test documents, studies, the article, figures, site, pages in a browser, files of VTK, manual, packages, faults, classical results
 	@scripts/install-deps.sh $(extra_packages)
 	@$(parallel) tests
 	@scripts/run-tests.sh $(program) $(extra_tests)

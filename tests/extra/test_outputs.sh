@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The outputs of every command: the messages, heads and key values of tests/data/outputs.txt occur in them.
 #
-#   tests/app/test_outputs.sh PROGRAM
+#   tests/extra/test_outputs.sh PROGRAM
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Names and links: shoal writes only regular files of its own and touches nothing else; no name is executed as a command.
 #
-#   tests/faults/test_names.sh PROGRAM
+#   tests/extra/test_names.sh PROGRAM
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 
@@ -63,7 +63,7 @@ ln -s ../precious linked/member-0000.failed
 ln -s ../precious linked/member-0001.failed
 run study study/case.yaml -o linked --set solver.max_steps=1
 check reasons_are_not_written_through_links precious
-check reasons_are_written grep -q 'integration failed' linked/member-0001.failed
+check reasons_are_written grep -q 'limited by solver.max_steps' linked/member-0001.failed
 rm linked/member-0000.failed && mkfifo linked/member-0000.failed
 run gather linked
 check gather_does_not_wait_for_a_fifo test "$code" = 1
