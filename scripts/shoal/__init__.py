@@ -6,8 +6,20 @@
     run["x"]                         # positions of all nodes, m: (fish, node, xy)
     data = shoal.open(shoal.run("case.yaml"))
 
+What the commands of the program do:
+
+    run(case)       simulate, write a result      resume(result)     continue a run that was stopped or killed
+    steady(case)    steady state, stability       study(case)        all members of a sweep; gather(folder)
+    error(case, of) numbers with error bars       compare(case)      integration methods by error and cost
+    check(case)     errors and cost of a case     keys(word)         keys of cases, variables of results
+    view(result)    a page for a browser          animate(result)    a movie
+    field(result)   the fluid on a grid           export(result, folder)  files of VTK
+
+Results as xarray: open(result); periods cuts them into beats, grid gives the axes of a sweep dimensions. In memory: Run, load.
+shoal.plot draws. SwimEnv, SwimVectorEnv, SchoolEnv: environments for learning.
+
 Needs NumPy, and the library libshoal: beside the package, in build/ of the sources, or named by the environment variable
-SHOAL_LIBRARY. check, steady, study, error and view call the program shoal (SHOAL_PROGRAM). open needs xarray and netCDF4, plot
+SHOAL_LIBRARY. All functions in the table but run call the program shoal (SHOAL_PROGRAM). open needs xarray and netCDF4, plot
 needs matplotlib; Gymnasium is optional.
 """
 
@@ -25,14 +37,14 @@ except ImportError as error:
 from . import _library
 from ._environments import SchoolEnv, SwimEnv, SwimVectorEnv
 from ._library import CaseError, Error, FileError, SolverError, version
-from ._program import CaseWarning, Check, Estimate, Page, Steady, check, error, steady, study, view
+from ._program import (
+    CaseWarning, Check, Estimate, Page, Steady, animate, check, compare, error, export, field, gather, keys, resume, steady, study, view,
+)
 from ._results import grid, open, periods  # noqa: A004 - shoal.open, as gzip.open
 from ._run import Run, Variable, load, run, variables
 
-simulate = run
-
-__all__ = ["Run", "run", "simulate", "load", "check", "steady", "study", "error", "open", "grid", "periods", "view", "variables", "version",
-           "Variable", "Check", "Steady", "Estimate", "Page", "SwimEnv", "SwimVectorEnv", "SchoolEnv", "Error", "CaseError", "FileError",
+__all__ = ["run", "resume", "steady", "study", "gather", "error", "compare", "check", "keys", "view", "animate", "field", "export",
+           "open", "grid", "periods", "load", "variables", "version", "Run", "Variable", "Check", "Steady", "Estimate", "Page", "SwimEnv", "SwimVectorEnv", "SchoolEnv", "Error", "CaseError", "FileError",
            "SolverError", "CaseWarning", "__version__"]
 
 

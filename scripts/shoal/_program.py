@@ -7,6 +7,7 @@ import csv
 import html
 import json
 import os
+import pathlib
 import re
 import shutil
 import subprocess
@@ -85,6 +86,22 @@ def _words(command, arguments, assignments):
     return words
 
 
+# the arguments of Python for the options that messages of the program name
+_ARGUMENTS = {"--force": "overwrite=True", "-o": "path", "--from": "start", "--set": "assignments", "-j": "processes",
+              "--within": "within", "--against": "against", "--of": "of", "--models": "models=True", "--sweep": "sweep",
+              "--end": "end", "--at": "at", "--grid": "grid", "--box": "box", "--methods": "methods", "--rtol": "rtol",
+              "--steps": "steps", "--limit": "limit", "--vtk": "folder"}
+
+
+def _in_python(text: str) -> str:
+    """A message of the program with the names of the arguments of these functions in place of its options."""
+    return re.sub(r"(?<![\w-])-{1,2}[a-z]+(?![\w-])", lambda found: _ARGUMENTS.get(found[0], found[0]), text)
+
+
+def _path(value, name: str) -> str:
+    return os.fsdecode(text_of(value, name))
+
+
 def _call(words, path, progress=False, shown=None) -> str:
     """Run the program; returns its output. Warnings become Python's, errors exceptions; shown: the path in messages."""
     said, complaints = [], []
@@ -107,7 +124,7 @@ def _call(words, path, progress=False, shown=None) -> str:
     if process.returncode == 0:
         return output
     text = "\n".join(line for line in complaints if line).replace(path, shown or path) or output
-    text = re.sub(r"^shoal: (error: )?", "", text, flags=re.M)
+    text = _in_python(re.sub(r"^shoal: (error: )?", "", text, flags=re.M))
     raise _ERRORS.get(process.returncode, Error)(text or f"shoal ended with exit code {process.returncode}")
 
 
@@ -175,6 +192,19 @@ class Steady:
         """Whether the slowest disturbance decays: the growth rate, s-1, is negative."""
         return bool(self._values["growth"] < 0)
 
+    def to_xarray(self):
+        """The values as an xarray.Dataset: per fish over `fish`, multipliers over `multiplier`."""
+        from ._results import _xarray
+
+        xarray, n = _xarray(), len(self.names)
+        data = {"multiplier": ("multiplier_number", self.multipliers)}
+        for name, value in self._values.items():
+            if name != "multiplier" and np.ndim(value) == 0:
+                data[name] = ((), value)
+            elif name != "multiplier" and np.shape(value)[0] == n:
+                data[name] = (("fish", *(f"{name}_{i}" for i in range(1, np.ndim(value)))), value)
+        return xarray.Dataset(data, coords={"fish": self.names}, attrs={"path": self.path})
+
     def open(self):
         """The result file as an xarray.Dataset."""
         from ._results import open as open_result
@@ -224,20 +254,120 @@ def _run_study(command, case, assignments, path, overwrite, processes, progress,
     return os.fsdecode(text_of(path, "path"))
 
 
+def _swept(sweep) -> list[str]:
+    """The assignment of a sweep, {key: values, ...}, as a full grid; none for None."""
+    if sweep is None:
+        return []
+    if not isinstance(sweep, Mapping) or not sweep:
+        raise TypeError(f"sweep is a dict of keys with their values, not {kind(sweep)}")
+    axes = [{"key": str(key), "values": list(values)} for key, values in sweep.items()]
+    return ["sweep=" + json.dumps(axes, default=lambda value: value.item())]
+
+
 def study(case, assignments=None, path=None, overwrite: bool = False, processes: int | None = None,
-          progress: bool | None = None, folder=None):
+          progress: bool | None = None, folder=None, sweep: Mapping | None = None):
     """Run all members of a case with a sweep (doc/studies.md); returns study.nc as an xarray.Dataset, in which the swept
     keys are coordinates: data.speed.plot(x="body_modulus"). shoal.grid gives each axis of the sweep a dimension.
 
     path: of the folder of the study (None: the name of the case with -study). overwrite: replace a study that exists;
-    else members that are complete are kept. processes: members at once. The path of study.nc is in attrs["path"].
+    else members that are complete are kept. processes: members at once. sweep: {key: values, ...}, a full grid in place
+    of the sweep of the case. The path of study.nc is in attrs["path"].
     """
-    path = _run_study("study", case, assignments, path, overwrite, processes, progress, folder)
+    path = _run_study("study", case, [*strings_of(assignments), *_swept(sweep)], path, overwrite, processes, progress, folder)
+    return _open_study(path)
+
+
+def _open_study(path: str):
     from ._results import open as open_result
 
     data = open_result(os.path.join(path, "study.nc"))
     data.attrs["path"] = os.path.join(path, "study.nc")
     return data
+
+
+def gather(path):
+    """Write study.nc of the folder of a study again from the files of its members; returns it as shoal.study does."""
+    _call([find_program(), "gather", "-q"], _path(path, "path"))
+    return _open_study(_path(path, "path"))
+
+
+def compare(case, methods=None, rtol=None, steps=None, assignments=None, path="compare.nc", overwrite: bool = False,
+            limit: float | None = None, progress: bool | None = None, folder=None):
+    """Compare integration methods by error and cost (doc/performance.md); returns the file as an xarray.Dataset.
+
+    methods: names, such as ["ida", "rk4"]. rtol: tolerances. steps: fixed steps, s, in place of tolerances. limit: wall
+    time of a run, s. None: as the program.
+    """
+    arguments = ["-o", _path(path, "path")] + (["--force"] if overwrite else []) + ([] if _shows(progress) else ["-q"])
+    for word, values in (("--methods", methods), ("--rtol", rtol), ("--steps", steps)):
+        arguments += [] if values is None else [word, ",".join(str(value) for value in ([values] if isinstance(values, str) else values))]
+    arguments += [] if limit is None else ["--limit", repr(number_of(limit, "limit"))]
+    with _CaseFile(case, folder) as file:
+        _call(_words("compare", arguments, assignments), file.path, _shows(progress), file.shown)
+    from ._results import open as open_result
+
+    return open_result(_path(path, "path"))
+
+
+# ---- what follows a run
+
+
+def resume(path, end: float | None = None, progress: bool | None = None) -> str:
+    """Continue a run that was stopped or killed (doc/reliability.md); returns the path of its result.
+
+    path: of the result, or of a checkpoint. end: a later end of the run, s, also of a complete one.
+    """
+    arguments = ([] if _shows(progress) else ["-q"]) + ([] if end is None else ["--end", repr(number_of(end, "end"))])
+    path = _path(path, "path")
+    _call([find_program(), "resume", *arguments], path, _shows(progress))
+    return re.sub(r"\.ckpt$", ".nc", path)
+
+
+def field(path, at: float | None = None, grid=None, box=None, file=None, overwrite: bool = False):
+    """Velocity and vorticity of the fluid on a grid, at a row of a result; returns the file as an xarray.Dataset.
+
+    path: of the result. at: time of a row, s (None: the last row with a wake). grid: numbers of points in x and y. box: its
+    corners, (x0, y0, x1, y1), m. file: of the field (None: the name of the result with -field.nc).
+    """
+    path = _path(path, "path")
+    file = re.sub(r"\.nc$", "", path) + "-field.nc" if file is None else _path(file, "file")
+    arguments = ["-q", "-o", file] + (["--force"] if overwrite else [])
+    arguments += [] if at is None else ["--at", repr(number_of(at, "at"))]
+    for word, values in (("--grid", grid), ("--box", box)):
+        arguments += [] if values is None else [word, ",".join(f"{value!r}" if isinstance(value, int) else repr(float(value)) for value in values)]
+    _call([find_program(), "field", *arguments], path)
+    from ._results import open as open_result
+
+    return open_result(file)
+
+
+def export(path, folder, overwrite: bool = False) -> str:
+    """Convert a result to files of VTK for ParaView in a folder (doc/output.md); returns the folder."""
+    folder = _path(folder, "folder")
+    _call([find_program(), "export", "-q", "--vtk", folder] + (["--force"] if overwrite else []), _path(path, "path"))
+    return folder
+
+
+def animate(path, movie=None) -> str:
+    """Make a movie of a result, .mp4 or .gif by its ending (None: the name of the result with .mp4); returns its path."""
+    path = _path(path, "path")
+    movie = re.sub(r"\.nc$", "", path) + ".mp4" if movie is None else _path(movie, "movie")
+    # in a wheel, in the sources, installed by make
+    share = pathlib.Path(find_program()).resolve().parent.parent / "share/shoal"
+    places = [folder / "animate.py" for folder in (lib.HERE / "scripts", lib.HERE.parent, share / "scripts")]
+    script = next((place for place in places if place.is_file()), None)
+    if script is None:
+        raise FileError("the script animate.py is in none of " + ", ".join(str(place.parent) for place in places))
+    done = subprocess.run([sys.executable, str(script), path, movie], capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise _ERRORS.get(done.returncode, Error)(re.sub(r"^animate\.py: ", "", done.stderr.strip()))
+    return movie
+
+
+def keys(word: str | None = None, output: bool = False) -> list[dict]:
+    """The keys of cases, or with output the variables of results: those with a word in name or meaning, or all."""
+    words = [find_program(), "keys", "--json"] + (["--output"] if output else [])
+    return json.loads(_call(words, "" if word is None else text_of(word, "word")))
 
 
 # ---- error bars
@@ -254,6 +384,9 @@ class Estimate(NamedTuple):
     flags: list[str]  #: per flagged key, why the levels of the key are not accepted
     models: tuple[float, float] | None = None  #: lowest and highest value with other choices of the model
     at: Mapping = {}  #: along a sweep, the swept keys with their values at this point; numbers where they are numbers
+
+    def __float__(self):
+        return float(self.value)
 
     def __str__(self):
         digits = max(0, 1 - int(np.floor(np.log10(self.error)))) if 0 < self.error < np.inf else 6

@@ -30,7 +30,13 @@ from matplotlib import pyplot
 from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
 
-__all__ = ["swim", "gait", "time", "forces", "pressure", "school", "field", "study", "paper", "STYLE"]
+__all__ = ["swim", "gait", "time", "forces", "pressure", "school", "field", "study"]
+
+
+
+def __dir__():
+    return sorted(__all__)
+
 
 NAMED = 30  # the names of more fish than these would hide the fish
 MOST_PANELS = 24  # of a picture with a panel per fish

@@ -585,6 +585,7 @@ class Programs(unittest.TestCase):
         places = [{"fish[*].body.modulus": modulus, "fluid.velocity": velocity} for modulus in (1e6, 2e6)
                   for velocity in ("[0, 0]", "[0.1, 0]")]
         self.assertEqual([one.at for one in found], 3 * places)
+        self.assertEqual(float(found[0]), found[0].value)
         self.assertAlmostEqual(found[6].value, found[2].value / found[0].value, delta=1e-7)
         self.assertIn("speed of a, fish[*].body.modulus 2e+06, fluid.velocity [0.1, 0]: ", str(found[3]))
 
@@ -609,6 +610,9 @@ class Programs(unittest.TestCase):
         self.assertAlmostEqual(float(steady.growth), np.log(abs(steady.multipliers[0])) * 1.0, 4)
         with steady.open() as data:
             self.assertEqual(float(data["steady_speed"][0]), steady.speed[0])
+        values = steady.to_xarray()
+        self.assertEqual(float(values["speed"].sel(fish="a")), steady.speed[0])
+        np.testing.assert_array_equal(values["multiplier"], steady.multipliers)
         with self.assertRaisesRegex(shoal.FileError, "slow.nc"):
             shoal.steady(case)
         self.assertIn("cost_of_transport", dir(steady))
@@ -627,6 +631,44 @@ class Programs(unittest.TestCase):
         self.assertEqual(data.attrs["path"], "swept-study/study.nc")
         with self.assertRaisesRegex(shoal.CaseError, "processes is an integer from 1"):
             shoal.study(case, processes=0)
+
+    def test_every_command_has_a_function(self):
+        case = {**PAIR, "name": "commands"}
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            path = shoal.run(case, path="commands.nc")
+            with shoal.open(path) as data:
+                end = float(data["time"][-1])
+            with self.assertRaisesRegex(shoal.FileError, "commands.nc is complete, and has no checkpoint"):
+                shoal.resume(path)
+            shoal.run(case, {"time.checkpoint_interval": end}, path="kept.nc")
+            self.assertEqual(shoal.resume("kept.nc", end=2 * end), "kept.nc")
+            with shoal.open("kept.nc") as data:
+                self.assertAlmostEqual(float(data["time"][-1]), 2 * end)
+
+            water = shoal.field(path, at=end, grid=(12, 7), box=(-1, -1, 3, 1))
+            self.assertEqual(dict(water.sizes)["x"], 12)
+            with self.assertRaisesRegex(shoal.FileError, "overwrite=True"):
+                shoal.field(path)
+            self.assertTrue(os.listdir(shoal.export(path, "vtk")))
+            self.assertGreater(os.path.getsize(shoal.animate(path, "commands.gif")), 1000)
+
+            swept = shoal.study(case, sweep={"fish[0].wave.frequency": np.array([0.9, 1.1])}, processes=1)
+            os.remove(swept.attrs["path"])
+            again = shoal.gather(os.path.dirname(swept.attrs["path"]))
+            np.testing.assert_array_equal(again["speed"], swept["speed"])
+            with self.assertRaisesRegex(TypeError, "sweep is a dict"):
+                shoal.study(case, sweep=["fish[0].nodes"])
+            compared = shoal.compare({**PAIR, "time": {"end": 0.02, "shedding_interval": 0.01}}, ["ida2", "ida3"], rtol=[1e-3, 1e-4])
+            self.assertIn("speed", compared)
+
+        found = {key["path"] for key in shoal.keys("smoothing")}
+        self.assertTrue({"wake.smoothing", "sheet.smoothing"} <= found < {key["path"] for key in shoal.keys()})
+        self.assertIn("speed", {variable["name"] for variable in shoal.keys("speed", output=True)})
+        self.assertEqual(dir(shoal.plot), ["field", "forces", "gait", "pressure", "school", "study", "swim", "time"])
+        self.assertFalse(hasattr(shoal, "simulate"))
+        for name in shoal.__all__:
+            self.assertTrue(getattr(shoal, name).__doc__ or name == "__version__", name)
 
     def test_a_sweep_is_a_grid(self):
         sweep = [{"keys": ["fish[*].body.modulus", "fish[*].nodes"], "values": [[1e6, 7], [1e5, 8]]},
@@ -705,7 +747,7 @@ class Programs(unittest.TestCase):
 
 class Results(unittest.TestCase):
     def test_a_result_is_that_of_the_program(self):
-        path = shoal.simulate(PAIR, path="by_python.nc")
+        path = shoal.run(PAIR, path="by_python.nc")
         self.assertEqual(path, "by_python.nc")
         pathlib.Path("by_program.yaml").write_text(json.dumps({"format": 1, "name": "run", **PAIR}))
         subprocess.run([os.environ["SHOAL"], "run", "-q", "by_program.yaml", "-o", "by_program.nc"], check=True)
@@ -719,7 +761,7 @@ class Results(unittest.TestCase):
     def test_checkpoints_of_a_case_are_those_of_the_program(self):
         case = {"format": 1, "name": "kept", **PAIR, "time": {**PAIR["time"], "checkpoint_interval": 0.06}}
         pathlib.Path("kept.yaml").write_text(json.dumps(case))
-        shoal.simulate(case, path="kept_python.nc")
+        shoal.run(case, path="kept_python.nc")
         subprocess.run([os.environ["SHOAL"], "run", "-q", "kept.yaml", "-o", "kept_program.nc"], check=True)
         subprocess.run([ROOT / "tests/run/same_result.py", "kept_python.nc", "kept_program.nc"], check=True)
         alone = shoal.Run(case)
@@ -748,7 +790,7 @@ class Results(unittest.TestCase):
 
             def swim():
                 try:
-                    ended.append(shoal.simulate(case, path="shared.nc", overwrite=overwrite))
+                    ended.append(shoal.run(case, path="shared.nc", overwrite=overwrite))
                 except shoal.FileError as error:
                     ended.append(str(error))
 
@@ -783,13 +825,13 @@ class Results(unittest.TestCase):
             self.assertEqual((data.attrs["run_status"], data["time"].size), ("complete", 11))
 
     def test_the_path_is_that_of_the_case(self):
-        self.assertEqual(shoal.simulate({**PAIR, "name": "named"}), "named.nc")
-        self.assertEqual(shoal.simulate(PAIR, {"output.file": "filed.nc"}), "filed.nc")
+        self.assertEqual(shoal.run({**PAIR, "name": "named"}), "named.nc")
+        self.assertEqual(shoal.run(PAIR, {"output.file": "filed.nc"}), "filed.nc")
         with self.assertRaisesRegex(shoal.FileError, "filed.nc"):
-            shoal.simulate(PAIR, {"output.file": "filed.nc"})
+            shoal.run(PAIR, {"output.file": "filed.nc"})
 
     def test_a_result_opens_with_names(self):
-        data = shoal.open(shoal.simulate(PAIR, path="names.nc"))
+        data = shoal.open(shoal.run(PAIR, path="names.nc"))
         self.assertEqual(list(data["fish"].values), ["a", "b"])
         np.testing.assert_allclose(data["com"].sel(fish="b", xy="y")[0], 0.7)
         self.assertEqual(data["wake_x"].dims, ("wake", "xy"))
@@ -804,7 +846,7 @@ class Results(unittest.TestCase):
             shoal.open("text.nc")
 
     def test_periods_are_cut(self):
-        data = shoal.open(shoal.simulate(PAIR, {"fish[*].wave.frequency": 12.5}, path="beats.nc"))
+        data = shoal.open(shoal.run(PAIR, {"fish[*].wave.frequency": 12.5}, path="beats.nc"))
         beats = shoal.periods(data, "a")
         self.assertEqual((beats.sizes["period"], beats.sizes["phase"]), (2, 4))
         np.testing.assert_array_equal(beats["com"].values.reshape(8, 2, 2), data["com"].values[:8])
