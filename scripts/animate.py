@@ -120,11 +120,11 @@ class Frames(Results):
         known = np.minimum(order, max(bb.size - 1, 0))
         stays = (order < bb.size) & (np.abs((bb[known] if bb.size else np.full(ba.size, np.inf)) - ba) < 1e-6)
         j = known[stays]
-        # a circulation is constant from an interval after the release on, but for merging and, with pressure.span: finite, for
-        # the flow along the span
+        # a circulation is constant from an interval after the release on, but for dropped neighbours and, with pressure.span:
+        # finite, for the flow along the span
         part = np.where(t - ba[stays] > self.shedding - 1e-9, np.where(self.rows[a] - ba[stays] < self.shedding - 1e-9, 1, q), q)
         moved = (1 - q) * xa[stays] + q * xb[j], (1 - part) * ca[stays] + part * cb[j], ba[stays]
-        gone = xa[~stays], (1 - q) * ca[~stays], ba[~stays]  # removed or merged until the next row
+        gone = xa[~stays], (1 - q) * ca[~stays], ba[~stays]  # removed or dropped until the next row
         is_new = np.ones(bb.size, dtype=bool)
         is_new[j] = False
         born = np.flatnonzero(is_new & (bb <= t + 1e-9))
@@ -133,7 +133,9 @@ class Frames(Results):
             if bb[k] > self.rows[a] - 1e-9:
                 part = np.clip((t - bb[k]) / max(self.rows[b] - bb[k], 1e-12), 0, 1)
                 new[0][i] = (1 - part) * self.nodes_at(bb[k], fish)[-1] + part * xb[k]
-        return tuple(np.concatenate(parts) for parts in zip(moved, gone, new))
+        found = [np.concatenate(parts) for parts in zip(moved, gone, new)]
+        order = np.argsort(found[2], kind="stable")
+        return tuple(values[order] for values in found)
 
 
 def choose_writer(movie, fps):

@@ -388,9 +388,15 @@ for i, t in enumerate(frames.time):
     off = np.abs(frames.nodes(i, 0) - fine.nodes(row, 0)).max()
     assert off < (1e-12 if abs(t * 10 - round(t * 10)) < 1e-9 else 1e-3) * length, (t, off)
     (place, strength), (wanted, other) = frames.wake(i), fine.wake(row)
-    # the newest vortex still grows
-    assert place.shape == wanted.shape and np.allclose(strength[:-1], other[:-1], atol=1e-12), t
-    assert np.abs(place - wanted).max(initial=0) < 0.02 * length, (t, np.abs(place - wanted).max())
+    # on rows the newest vortex still grows; between rows a marker that will be dropped fades, and its neighbours grow
+    if abs(t * 10 - round(t * 10)) < 1e-9:
+        assert place.shape == wanted.shape and np.allclose(strength[:-1], other[:-1], atol=1e-12), t
+        assert np.abs(place - wanted).max(initial=0) < 1e-12 * length, (t, np.abs(place - wanted).max())
+    else:
+        apart = np.linalg.norm(place[:, None] - wanted, axis=2).min(axis=0, initial=np.inf)
+        assert 0 <= len(place) - len(wanted) <= 5 and apart.max(initial=0) < 0.02 * length, (t, len(place), len(wanted), apart)
+        off = abs(strength[:-1].sum() - other[:-1].sum())
+        assert off < 1e-6 + 0.02 * np.abs(other).max(initial=0), (t, off, np.abs(other).max())
     assert np.abs(frames["com"][i] - fine["com"][row]).max() < 1e-4 * length
 assert animate.Frames("rows_0.02.nc", 25, 1).how == "every 2nd row of the file"
 # the camera holds the bodies and does not beat with them: its path bends less than that of the fish
