@@ -2,7 +2,7 @@
 # The cases of the article's figures (cases/article) do what the article says of them, and the table of doc/article.md has
 # their numbers. The bounds are in scripts/article.py.
 #
-#   tests/extra/test_article.sh PROGRAM
+#   tests/app/test_article.sh PROGRAM
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 
