@@ -82,9 +82,9 @@ TEST(a_default_fish_costs_as_little) {
         AT_MOST(cost.steps, 2.5);
         AT_MOST(cost.iterations, 6);
         AT_MOST(cost.jacobians, 0.5);  // most where the slowest mode beats with the muscle
-        // stiff bodies: some convergence failures with old Jacobians that an age limit would have replaced, 36 in 400
+        // stiff bodies: some convergence failures with old Jacobians that an age limit would have replaced, 34 in 400
         // events with 1e10 Pa
-        AT_MOST(cost.failures, 0.1);
+        AT_MOST(cost.failures, moduli[i] < 1e8 ? 0.01 : 0.1);
     }
 }
 
