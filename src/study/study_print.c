@@ -146,6 +146,17 @@ static void add_key_columns(struct table *table, const struct case_values *study
     }
 }
 
+/* Whether the study sweeps keys of other fish than the first one: what does the first fish change at them? */
+static bool is_of_followers(const struct case_values *study) {
+    for (int a = 0; a < study->n_axes; a++) {
+        for (int k = 0; k < study->sweep[a].n_keys; k++) {
+            const char *const path = study->sweep[a].key[k].path;
+            if (strncmp(path, "fish[", 5) == 0 && path[5] != '*' && path[5] != '0') return true;
+        }
+    }
+    return false;
+}
+
 void study_print(struct arena *arena, const struct case_values *study, const struct member_file *members,
                  FILE *stream) {
     const int n = sweep_n_members(study),
@@ -173,6 +184,15 @@ void study_print(struct arena *arena, const struct case_values *study, const str
         if (quantity[s] >= 0) table_column(table, shown[s].head, strcmp(row->unit, "1") == 0 ? "" : row->unit);
     }
 
+    // of followers the power of the muscle or of the held body over that of the first fish, and beside the ratio the
+    // change, because a ratio looks tame where the power of a single fish is too large
+    const bool has_ratio = is_of_followers(study);
+    const int power = member_file_quantity_number("mean_power");
+    if (has_ratio) {
+        table_column(table, "power ratio", "");
+        table_column(table, "change", "W");
+    }
+
     // a row for each fish of each member
     table_column(table, "status", NULL);
     for (int m = 0; m < n; m++) {
@@ -188,6 +208,12 @@ void study_print(struct arena *arena, const struct case_values *study, const str
                 if (quantity[s] < 0) continue;
                 const int of = member_file_quantity(quantity[s])->of_fish ? f : 0;
                 table_number(table, shown[s].format, member_file_value(&members[m], quantity[s], of, 0));
+            }
+            if (has_ratio) {
+                const double first = member_file_value(&members[m], power, 0, 0),
+                             own = f > 0 ? member_file_value(&members[m], power, f, 0) : NAN;
+                table_number(table, "%.4f", own / first);
+                table_number(table, "%+.4g", own - first);
             }
             // "failed: reason": the reasons follow the table
             table_cell(table, "%.*s", (int)strcspn(members[m].status, ":"), members[m].status);
