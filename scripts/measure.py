@@ -1053,6 +1053,37 @@ def markers(bench):
                 yield name, span, interval, len(fish) * round(3 / interval), kept, short(balance)
 
 
+FOLLOWER = """\
+format: 1
+time: {{end: 10, shedding_interval: 0.02, output_interval: 0.1}}
+wake: {{lifetime: {lifetime} beats, decay: {decay} beats}}
+steady: {{formation: true, tolerance: 1e-3, beats: 250}}
+defaults: {{fish: {{nodes: 17, start: {{speed: 0.8}}, control: {{law: course}}}}}}
+fish: [{{name: leader}}, {{name: follower, start: {{position: {place}}}}}]
+"""
+
+
+@table("lifetime", "decay", "speed", "cost", "beats", "1.5 m", "1.95 m", "3 m", "4 m", "4.4 m", "multiplier", "beats of the pair",
+       "balance [N s]", "CPU time of the diamond [s]")
+def lifetimes(bench):
+    """one fish, a follower and the diamond, with wakes of 3 to 20 beats (two minutes)"""
+    for lifetime, decay in ((3, 2.25), (5, 1.25), (8, 2), (12, 3), (20, 1)):
+        keys = (f"wake.lifetime={lifetime} beats", f"wake.decay={decay} beats")
+        alone = bench.steady("swim", *keys)
+        changes = []
+        for place, t in (("[1.5, 0]", 4), ("[1.95, 0]", 4), ("[3, 0.1]", 10), ("[4, 0.1]", 10), ("[4.4, 0.1]", 10)):
+            run = bench.run(FOLLOWER.format(lifetime=lifetime, decay=decay, place=place))
+            cost = run["cost_of_transport"][run.nearest(t)]
+            changes.append(f"{100 * (cost[1] / cost[0] - 1):+.2f} %")
+        pair = bench.steady(FOLLOWER.format(lifetime=lifetime, decay=decay, place="[1.95, 0]"))
+        swim = bench.run("swim", *keys, "time.end=12")
+        yield (lifetime, decay, f"{alone['steady_speed'][0]:.5f}", f"{alone['steady_cost_of_transport'][0]:.5f}", alone["steady_beats"],
+               *changes, f"{max(math.hypot(*value) for value in pair['steady_multiplier']):.3f}" if pair else "not found",
+               pair["steady_beats"] if pair else "over 250",
+               short(float(np.linalg.norm(swim["momentum_balance"][-1].sum(axis=0)))),
+               f"{bench.seconds('diamond_pressure', *keys, 'time.shedding_interval=0.01', 'time.end=12', repeats=1):.2f}")
+
+
 # ---- documents ----
 
 COMMAND = re.compile(r"^`scripts/measure\.py ([a-z_]+)`")

@@ -98,12 +98,12 @@ static void derive_wake(const struct key_place *at) {
         if (frequency > 0) period = fmax(period, 1 / frequency);
     }
 
-    if (isnan(wake->lifetime.seconds) && period > 0) set_default(&wake->lifetime.beats, 3);
+    if (isnan(wake->lifetime.seconds) && period > 0) set_default(&wake->lifetime.beats, 8);
     set_default(&wake->lifetime.seconds, wake->lifetime.beats * period);
     set_default(&wake->lifetime.seconds, 2);
-    if (isnan(wake->decay.seconds) && period > 0) set_default(&wake->decay.beats, 0.75 * wake->lifetime.beats);
+    if (isnan(wake->decay.seconds) && period > 0) set_default(&wake->decay.beats, 0.25 * wake->lifetime.beats);
     set_default(&wake->decay.seconds, wake->decay.beats * period);
-    set_default(&wake->decay.seconds, 0.75 * wake->lifetime.seconds);
+    set_default(&wake->decay.seconds, 0.25 * wake->lifetime.seconds);
 
     // the ratio of a street without linear growth of disturbances: cosh^2(pi h/a) = 2
     if (street->n > 0) set_default(&street->row_distance, acosh(sqrt(2)) / M_PI * street->spacing);
@@ -223,10 +223,10 @@ const struct key case_table[] = {
      .choice = {"wake.shedding", "sheet", 0.07, 0}, .follows = WORDS("wake.shedding")},
     {"wake.lifetime", DURATION, AT(school.wake.lifetime), NULL, ABOVE(0), "s",
      .meaning = "age at which a vortex is removed, in s or in beats of the slowest fish, such as '3 beats'",
-     .derived = "3 beats; 2 s if no fish beats", .derive = derive_wake, .cause = "fish.wave.frequency",
+     .derived = "8 beats; 2 s if no fish beats", .derive = derive_wake, .cause = "fish.wave.frequency",
      .published = "2", .synonyms = "life max_age age"},
     {"wake.decay", DURATION, AT(school.wake.decay), NULL, FROM(0), "s",
-     .meaning = "last part of the lifetime, in which the circulation decays to 0", .derived = "3/4 of the lifetime",
+     .meaning = "last part of the lifetime, in which the circulation decays to 0", .derived = "1/4 of the lifetime",
      .derive = derive_wake, .cause = "wake.lifetime", .published = "0"},
     {"wake.shedding", CHOICE, AT(school.wake.shedding), "sheet", ANY, "",
      .meaning = "sheet: a vortex sheet grows from the tail; continuous: a vortex grows between events; impulsive: a "

@@ -226,7 +226,8 @@ check a_stable_state_is_not test "$code" = 0 -a "$(grep -cE 'unstable|circle' er
 
 # ---- less than the errors of the integrator
 
-run steady swim.yaml -q -o least.nc --set "fish[0].nodes=5" --set steady.tolerance=1e-8 --set steady.beats=1000 --set steady.multipliers=true
+run steady swim.yaml -q -o least.nc --set "fish[0].nodes=5" --set steady.tolerance=1e-8 --set steady.beats=1000 --set steady.multipliers=true \
+    --set "wake={lifetime: 3 beats, decay: 2.25 beats}"
 check what_the_rows_do_not_keep_is_warned_of test "$code" = 0
 check with_the_remedy grep -q 'more than steady.tolerance, 1e-08: .* lower solver.rtol$' err
 

@@ -200,7 +200,7 @@ set_fails set_bad_yaml "needs ',' between values and ends with ']'" 'fish[0].sta
 set_fails set_only_a_comment "expects a value after the '='" 'name=# eel'
 set_fails set_unknown_key_in_map "fish[0].wave.amplitud: unknown key; did you mean 'amplitude'?" 'fish[0].wave={amplitud: 1}'
 set_fails set_include '--set include=[a.yaml]: error: include: is allowed in case files only' 'include=[a.yaml]'
-set_fails set_inconsistent '--set wake.decay=4: error: wake.decay: 4 s is longer than wake.lifetime, 3 s' wake.decay=4
+set_fails set_inconsistent '--set wake.decay=9: error: wake.decay: 9 s is longer than wake.lifetime, 8 s' wake.decay=9
 set_fails set_twice_the_last_counts 'time.end: expects a number in s, got '"'b'" time.end=1 time.end=b
 set_fails set_section_to_a_value "--set wake=3: error: wake: expects a section with keys, got '3'" wake=3
 expect set_and_bad_file 2 "time.ned: unknown key" crlf.yaml --set nmae=3

@@ -55,8 +55,8 @@ TEST(the_defaults_are_those_of_the_reference) {
     NEAR(s.school.wake.taper_beside, 0.07, 0, 0);
     assert_int_equal(s.school.sheet.curve, BODY_LINE_SMOOTH);
     NEAR(s.school.sheet.smoothing, 0.05, 0, 0);
-    NEAR(s.school.wake.lifetime.seconds, 3, 0, 0);
-    NEAR(s.school.wake.decay.seconds, 2.25, 0, 0);
+    NEAR(s.school.wake.lifetime.seconds, 8, 0, 0);
+    NEAR(s.school.wake.decay.seconds, 2, 0, 0);
     assert_int_equal(s.school.wake.shedding, SHEDDING_SHEET);
     assert_int_equal(s.school.sheet.kutta, KUTTA_EDGE);
     assert_int_equal(s.school.sheet.collocation, COLLOCATION_CHEBYSHEV);
@@ -105,13 +105,13 @@ TEST(lifetime_and_fade_may_be_in_beats) {
         const char *wake, *fish;
         double lifetime, decay;
     } cases[] = {
-        {"", "{wave: {frequency: 4}}, {wave: {frequency: 0.5}}, {wave: {frequency: 0}}", 6, 4.5},
-        {"wake: {lifetime: 5 beats}\n", "{wave: {frequency: 2}}", 2.5, 1.875},
+        {"", "{wave: {frequency: 4}}, {wave: {frequency: 0.5}}, {wave: {frequency: 0}}", 16, 4},
+        {"wake: {lifetime: 5 beats}\n", "{wave: {frequency: 2}}", 2.5, 0.625},
         {"wake: {lifetime: 0.5 beats, decay: 0 beats}\n", "{}", 0.5, 0},
         {"wake: {lifetime: 7, decay: 1 beat}\n", "{wave: {frequency: 0.2}}", 7, 5},
-        {"wake: {decay: 2}\n", "{}", 3, 2},
-        {"", "{wave: {frequency: 3}, motion: {prescribed: all, frequency: 0.5, heave: 0.1}}", 6, 4.5},
-        {"", "{wave: {frequency: 0}}", 2, 1.5},
+        {"wake: {decay: 3}\n", "{}", 8, 3},
+        {"", "{wave: {frequency: 3}, motion: {prescribed: all, frequency: 0.5, heave: 0.1}}", 16, 4},
+        {"", "{wave: {frequency: 0}}", 2, 0.5},
         {"preset: published\nwake: {lifetime: 4 beats}\n", "{wave: {frequency: 2}}", 2, 0},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -130,7 +130,7 @@ TEST(derived_defaults_follow_what_they_derive_from) {
         "  {control: {waypoints: [[1, 2]]}}]\n");
     NEAR(s.time.output_interval, 0.2, 0, 1e-15);
     NEAR(s.output.wake_interval, 0.2, 0, 1e-15);
-    NEAR(s.school.wake.decay.seconds, 2.25, 0, 1e-15);
+    NEAR(s.school.wake.decay.seconds, 0.75, 0, 1e-15);
     assert_string_equal(s.name, "x");
     assert_string_equal(s.school.fish[0].name, "fish1");
     assert_string_equal(s.school.fish[1].name, "fish2");

@@ -430,6 +430,7 @@ TEST(a_run_that_diverges_ends_with_its_last_finite_row) {
     // one event a beat: the wake grows by some orders of magnitude at each event, up to the largest double
     run_into(
         "time: {end: 0.9, shedding_interval: 0.02, output_interval: 0.02}\n"
+        "wake: {lifetime: 3 beats, decay: 2.25 beats}\n"
         "fish: [{wave: {amplitude: 0}, motion: {prescribed: all, heave: 0.7, frequency: 50}}]\n",
         &options, STATUS_SOLVER);
     assert_non_null(strstr(status_message(), "has diverged at t = 0."));

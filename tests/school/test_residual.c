@@ -95,7 +95,7 @@ static const struct variant {
     {"three fish, kutta rate, midpoint, waypoints",
      SMALL FAR CONTINUOUS "sheet: {kutta: rate, collocation: midpoint}\n"
                           "fish:\n  - {control: {law: heading, waypoints: [[-3, 1]]}}\n"
-                          "  - {nodes: 5, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
+                          "  - {nodes: 5, length: 0.7, start: {position: [0.2, 0.52], heading: 170}}\n"
                           "  - {nodes: 9, length: 1.2, start: {position: [0.1, -0.6], heading: 200},\n"
                           "     body: {second_moment: published, damping: curvature}, control: {law: heading}}\n"},
     {"two fish, polygon", SMALL FAR "sheet: {curve: polygon}\n"

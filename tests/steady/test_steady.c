@@ -98,18 +98,18 @@ static void circle(const char *text, double least_turn, int most_beats) {
 
 TEST(a_fish_that_is_steered_to_one_side_goes_in_a_circle) {
     circle(COARSE "steady: {tolerance: 2e-5}\nfish: [{" FISH ", start: {speed: 0.6}, control: {bias: 0.02}}]\n", 0.02,
-           22);
+           30);
     circle(COARSE "steady: {tolerance: 2e-5}\nfish: [{" FISH ", start: {speed: 0.6}, control: {bias: 0.2}}]\n", 0.2,
-           22);
+           30);
     circle(COARSE
            "steady: {tolerance: 2e-5}\nfish: [{nodes: 7, sheet_points: 13,"
            " force: pressure, pressure: {span: infinite}, control: {bias: 0.2}}]\n",
-           0.2, 25);
+           0.2, 30);
     // removed circulation is dropped: the circulation is not a separate quantity
     circle(COARSE
            "steady: {tolerance: 2e-5}\nwake: {removed_circulation: dropped}\n"
            "fish: [{" FISH ", start: {speed: 0.6}, control: {bias: 0.2}}]\n",
-           0.2, 22);
+           0.2, 30);
 }
 
 // the influence of the initial state decays by 1 % per beat

@@ -4,7 +4,7 @@
 // two heaving plates, from this initial place of the follower
 #define PLATES                                                                                                   \
     "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"                                           \
-    "fluid: {density: 1, viscosity: 2e-3}\nwake: {lifetime: 3, smoothing: 0.2}\n"                                \
+    "fluid: {density: 1, viscosity: 2e-3}\nwake: {lifetime: 3, decay: 2.25, smoothing: 0.2}\n"                   \
     "steady: {formation: true, tolerance: 3e-3}\n"                                                               \
     "defaults: {fish: {nodes: 5, sheet_points: 13, force: pressure, pressure: {span: infinite}, start: {speed: " \
     "4.1},\n"                                                                                                    \

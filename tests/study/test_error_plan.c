@@ -66,7 +66,7 @@ TEST(the_keys_of_the_table_have_the_levels_of_the_table) {
     levels_are(&study, "time.shedding_interval", 4, (double[]){0.005, 0.01, 0.02, 0.04}, 0.01);
     levels_are(&study, "solver.rtol", 3, (double[]){1e-6, 1e-5, 1e-4}, 1e-5);
     levels_are(&study, "wake.tolerance", 3, (double[]){1e-7, 1e-6, 1e-5}, 1e-6);
-    levels_are(&study, "wake.lifetime", 4, (double[]){12, 6, 3, 1.5}, 3);
+    levels_are(&study, "wake.lifetime", 4, (double[]){32, 16, 8, 4}, 8);
     assert_null(key_of(&study, "wake.smoothing"));
     assert_null(key_of(&study, "solver.step"));
 
@@ -188,13 +188,13 @@ TEST(a_duration_keeps_the_unit_of_the_case) {
         const char *wake, *unit, *longest, *fade;
         double level[4];
     } examples[] = {
-        {"", " beats", "12 beats", "9 beats", {12, 6, 3, 1.5}},
+        {"", " beats", "32 beats", "8 beats", {32, 16, 8, 4}},
         {"wake: {lifetime: 4 beats, decay: 1}\n", " beats", "16 beats", "4", {16, 8, 4, 2}},
         {"wake: {lifetime: 1.5, decay: 1 beat}\n", "", "6", "4 beats", {6, 3, 1.5, 0.75}},
     };
     for (size_t i = 0; i < sizeof examples / sizeof *examples; i++) {
         char text[256];
-        snprintf(text, sizeof text, "format: 1\ntime: {end: 8}\n%sfish: [{wave: {frequency: 2}}]\n", examples[i].wake);
+        snprintf(text, sizeof text, "format: 1\ntime: {end: 20}\n%sfish: [{wave: {frequency: 2}}]\n", examples[i].wake);
         struct error_study study = open_study(text, "{of: steady_speed, keys: [lifetime]}");
         const struct error_study_key *const key = key_of(&study, "wake.lifetime");
         levels_are(&study, "wake.lifetime", 4, examples[i].level, examples[i].level[2]);
@@ -204,7 +204,7 @@ TEST(a_duration_keeps_the_unit_of_the_case) {
         assert_string_equal(row[error_plan_column(&study, "wake.lifetime", 0)], examples[i].longest);
         assert_string_equal(row[error_plan_column(&study, "wake.decay", 0)], examples[i].fade);
         const struct case_values member = member_of(study.study, key->member[0]);
-        NEAR(member.school.wake.lifetime.seconds, i == 0 ? 6 : i == 1 ? 8 : 6, 0, 1e-12);
+        NEAR(member.school.wake.lifetime.seconds, i == 0 ? 16 : i == 1 ? 8 : 6, 0, 1e-12);
     }
     // a run with an earlier end keeps the whole wake
     struct error_study study =
