@@ -51,6 +51,16 @@ struct modes {
 
 // ---- the wake
 
+/* Age of marker i in events, 0 for the newest one: dropped markers leave gaps. */
+static int marker_age(const struct wake *wake, double interval, int i) {
+    return (int)lround((wake->birth[wake->n_vortex - 1] - wake->birth[i]) / interval);
+}
+
+/* Number of events of the wake, with the markers that were dropped. */
+static int wake_length(const struct wake *wake, double interval) {
+    return wake->n_vortex > 0 ? marker_age(wake, interval, 0) + 1 : 0;
+}
+
 /* Set the labels of a fish to the labels shed by a motion with exponent lambda, tau after the event: real or imaginary
  * part, times a factor. */
 static void put_labels(const struct modes *modes, int f, double complex lambda, double tau, int is_imaginary,
@@ -59,16 +69,19 @@ static void put_labels(const struct modes *modes, int f, double complex lambda, 
     const struct school *const school = modes->residual->school;
     const double interval = school->interval;
     // no window for a wake of full length that decays
-    const bool has_all = (wake->n_vortex + 2) * interval >= school->lifetime;
+    const int length = wake_length(wake, interval);
+    const bool has_all = (length + 2) * interval >= school->lifetime;
     const bool is_whole = has_all && school->decay >= 0.99 * window * school->lifetime;
     const double complex step = cexp(-lambda * interval);
     double complex exact = cexp(-lambda * tau), label = exact;
     wake->shed_before = modes->shed[f] + factor * (is_imaginary ? cimag(exact) : creal(exact));
-    for (int i = wake->n_vortex - 1, a = 0; i >= 0; i--, a++) {
-        const double part = is_whole ? 1 : 1 - ramp_step(((a + 0.5) / wake->n_vortex - (1 - window)) / window);
+    for (int i = wake->n_vortex - 1, a = 0; i >= 0; a++) {
+        const double part = is_whole ? 1 : 1 - ramp_step(((a + 0.5) / length - (1 - window)) / window);
         const double complex strength = part * (exact - exact * step);
-        const double complex value = wake->has_markers ? label : strength;
-        wake->circulation[i] = modes->label[f][i] + factor * (is_imaginary ? cimag(value) : creal(value));
+        for (; i >= 0 && marker_age(wake, interval, i) <= a; i--) {
+            const double complex value = wake->has_markers ? label : strength;
+            wake->circulation[i] = modes->label[f][i] + factor * (is_imaginary ? cimag(value) : creal(value));
+        }
         label -= strength;
         exact *= step;
     }
@@ -320,7 +333,7 @@ static enum status find_still(const struct modes *modes, const double complex *s
 static int is_resolved(const struct modes *modes, double complex lambda, double loosely) {
     const double interval = modes->residual->school->interval;
     double life = interval;
-    for (int f = 0; f < modes->n_shed; f++) life = fmax(life, modes->state->wake[f].n_vortex * interval);
+    for (int f = 0; f < modes->n_shed; f++) life = fmax(life, wake_length(&modes->state->wake[f], interval) * interval);
     return cimag(lambda) >= 0 && cabs(lambda) * interval <= loosely * fastest &&
            -creal(lambda) * life <= loosely * slowest;
 }

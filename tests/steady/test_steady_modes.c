@@ -147,6 +147,30 @@ TEST(the_lifetime_of_a_long_wake_does_not_matter) {
 }
 
 /* Growth has no limit: only modes that decay within the life of the wake are left out. */
+// dropped markers leave gaps, so the place of a marker in the wake is not its age
+TEST(dropped_markers_do_not_change_them) {
+    static const char text[] =
+        "time: {end: 1, shedding_interval: 0.02}\nfluid: {density: 1, velocity: [1, 0], viscosity: 0}\n"
+        "wake: {lifetime: 5}\n"
+        "fish: [{nodes: 9, sheet_points: 33, force: pressure, pressure: {span: infinite}, start: {heading: 180, speed: "
+        "0},\n"
+        "        wave: {amplitude: 0, frequency: 0}, motion: {prescribed: head},\n"
+        "        body: {profile: uniform, thickness: 0.02, depth: 1, density: 63.662, modulus: 39788, relaxation_time: "
+        "0}}]\n";
+    struct found with, without = {.simulation = school_simulation(text)};
+    find(&with, text);
+    ((struct school *)without.simulation->school)->wake_spacing = 0;
+    without.values = (struct steady_values){.fish = without.fish, .rate = without.rate, .omega = without.omega};
+    school_ok(steady_static_find(without.simulation, NULL, &without.values));
+    school_ok(steady_modes_find(without.simulation, &without.values));
+    ABOVE(without.values.n_exponents, 1);
+    for (int i = 0; i < 2; i++) {
+        const int k = nearest(&with, without.omega[i]);
+        NEAR(with.omega[k], without.omega[i], 0, 2e-4);
+        NEAR(with.rate[k], without.rate[i], 0, 2e-4);
+    }
+}
+
 TEST(a_mode_that_grows_fast_in_a_long_wake_is_found) {
     struct found brief, longer;
     find_in_wake(&brief, SOFT_FLAG, "lifetime: 4, decay: 3");
