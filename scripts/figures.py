@@ -156,8 +156,8 @@ FIGURES = {
     "stiffness": [f"shoal study {STUDY}stiffness.yaml -q -j 1 -o stiffness", "plot.py study stiffness/study.nc stiffness.png"],
     "follower_map": [f"shoal study {STUDY}follower_map.yaml -q -o follower_map",
                      *(f"shoal steady {STUDY}follower_map.yaml -q --set sweep=[] --set fish[1].start.position=[{place}] -o {name}.nc"
-                       for name, place in (("stable", "0.93,0.3"), ("near", "1.5,0"), ("far", "2.1,0"))),
-                     "plot.py study follower_map/study.nc --of cost_of_transport --relative --states stable.nc near.nc far.nc "
+                       for name, place in (("aside", "0.93,0.3"), ("near", "1.5,0"), ("far", "2.1,0"))),
+                     "plot.py study follower_map/study.nc --of cost_of_transport --relative --states aside.nc near.nc far.nc "
                      "-- follower_map.png"],
     "validation": ["scripts/validation.py validation.png"],
     "real_time": ["scripts/measure.py --picture real_time.png"],

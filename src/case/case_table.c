@@ -101,9 +101,12 @@ static void derive_wake(const struct key_place *at) {
     if (isnan(wake->lifetime.seconds) && period > 0) set_default(&wake->lifetime.beats, 8);
     set_default(&wake->lifetime.seconds, wake->lifetime.beats * period);
     set_default(&wake->lifetime.seconds, 2);
-    if (isnan(wake->decay.seconds) && period > 0) set_default(&wake->decay.beats, 0.25 * wake->lifetime.beats);
+
+    // a wake ends abruptly for the modes of a school that does not beat, unless it decays over most of its life
+    const double part = period > 0 ? 0.25 : 0.75;
+    if (isnan(wake->decay.seconds) && period > 0) set_default(&wake->decay.beats, part * wake->lifetime.beats);
     set_default(&wake->decay.seconds, wake->decay.beats * period);
-    set_default(&wake->decay.seconds, 0.25 * wake->lifetime.seconds);
+    set_default(&wake->decay.seconds, part * wake->lifetime.seconds);
 
     // the ratio of a street without linear growth of disturbances: cosh^2(pi h/a) = 2
     if (street->n > 0) set_default(&street->row_distance, acosh(sqrt(2)) / M_PI * street->spacing);
@@ -226,8 +229,9 @@ const struct key case_table[] = {
      .derived = "8 beats; 2 s if no fish beats", .derive = derive_wake, .cause = "fish.wave.frequency",
      .published = "2", .synonyms = "life max_age age"},
     {"wake.decay", DURATION, AT(school.wake.decay), NULL, FROM(0), "s",
-     .meaning = "last part of the lifetime, in which the circulation decays to 0", .derived = "1/4 of the lifetime",
-     .derive = derive_wake, .cause = "wake.lifetime", .published = "0"},
+     .meaning = "last part of the lifetime, in which the circulation decays to 0",
+     .derived = "1/4 of the lifetime; 3/4 if no fish beats", .derive = derive_wake, .cause = "wake.lifetime",
+     .published = "0"},
     {"wake.shedding", CHOICE, AT(school.wake.shedding), "sheet", ANY, "",
      .meaning = "sheet: a vortex sheet grows from the tail; continuous: a vortex grows between events; impulsive: a "
                 "vortex appears at each event",

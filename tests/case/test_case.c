@@ -111,7 +111,7 @@ TEST(lifetime_and_fade_may_be_in_beats) {
         {"wake: {lifetime: 7, decay: 1 beat}\n", "{wave: {frequency: 0.2}}", 7, 5},
         {"wake: {decay: 3}\n", "{}", 8, 3},
         {"", "{wave: {frequency: 3}, motion: {prescribed: all, frequency: 0.5, heave: 0.1}}", 16, 4},
-        {"", "{wave: {frequency: 0}}", 2, 0.5},
+        {"", "{wave: {frequency: 0}}", 2, 1.5},
         {"preset: published\nwake: {lifetime: 4 beats}\n", "{wave: {frequency: 2}}", 2, 0},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
