@@ -851,7 +851,7 @@ defaults:
 fish:
   - {{name: first}}
 {}"""
-UNDECAYED = "wake: {lifetime: 12, decay: 1}"
+BRIEF = "wake: {lifetime: 3 beats, decay: 2.25 beats}"
 
 
 def reference(name):
@@ -867,11 +867,11 @@ def power_and_thrust(bench, wake, second=""):
             np.mean(run["mean_thrust"][-2:], axis=0) / (0.5 * 1.25**2))
 
 
-@table("foil 2", "phase", "CP ratio of foil 1: NS", "default", "undecayed", "CP ratio of foil 2: NS", "default", "undecayed",
-       "change of CP of foil 2: NS", "default", "undecayed", "change of CT of foil 2: NS", "default", "undecayed")
+@table("foil 2", "phase", "CP ratio of foil 1: NS", "3 beats", "default", "CP ratio of foil 2: NS", "3 beats", "default",
+       "change of CP of foil 2: NS", "3 beats", "default", "change of CT of foil 2: NS", "3 beats", "default")
 def pairs_of_foils(bench):
-    """two foils beside a Navier-Stokes solution, with the default wake and with one that does not fade (a minute)"""
-    wakes = ("", UNDECAYED)
+    """two foils beside a Navier-Stokes solution, with a wake of 3 beats and the default one (a minute)"""
+    wakes = (BRIEF, "")
     alone = [power_and_thrust(bench, wake) for wake in wakes]
     for row in reference("school_navier_stokes.csv"):
         distance, phase = float(row["distance"]), int(row["phase"])
@@ -887,7 +887,7 @@ def pairs_of_foils(bench):
                f"{float(row['thrust2']):+.2f}", *(f"{value:+.2f}" for value in thrust))
 
 
-@table("gap [L]", "NS: power ratio", "place [L]", "default", "place [L]", "undecayed", "place [L]")
+@table("gap [L]", "NS: power ratio", "place [L]", "3 beats", "place [L]", "default", "place [L]")
 def pairs_of_swimmers(bench):
     """a swimmer that follows another one beside a Navier-Stokes solution of its midlines (a minute)"""
     with open(os.path.join(CASES, "swimmer_navier_stokes.yaml"), encoding="utf-8") as file:
@@ -899,7 +899,7 @@ def pairs_of_swimmers(bench):
             "  - {name: second, start: {position: [%g, 0], speed: 0.634}}\n")
     for row in reference("swimmers_navier_stokes.csv"):
         cells = []
-        for wake in ("", UNDECAYED + "\n"):
+        for wake in (BRIEF + "\n", ""):
             run = bench.run(begin + wake + pair % (1 + float(row["gap"])))
             n = int(round(1 / (run.time[-1] - run.time[-2])))
             behind = np.mean(run["x"][-n:, 1, 0] - run["x"][-n:, 0, 0], axis=0)
@@ -982,13 +982,13 @@ def changes_of_cost(bench, wake):
         yield 100 * (np.mean(both) if "[0, " in keys else both[1])
 
 
-@table("publication", "pair", "there", "default", "undecayed")
+@table("publication", "pair", "there", "3 beats", "default")
 def published_pairs(bench):
     """signs, slopes and ratios of three publications on pairs, which have other bodies (two minutes)"""
     def of_both(function):
-        return zip(*(function(bench, wake) for wake in ("", UNDECAYED)))
+        return zip(*(function(bench, wake) for wake in (BRIEF, "")))
 
-    slopes = [slope_of_least_power(bench, wake) for wake in ("", UNDECAYED)]
+    slopes = [slope_of_least_power(bench, wake) for wake in (BRIEF, "")]
     yield ("Li et al. (2020), robots", "phase of the follower's least power over its place, degrees a wavelength", "-360",
            *(f"{slope:.0f}" for slope in slopes))
     for pair, there, here in zip(("in line, one length apart", "offset"), ("1.16", "1.42"), of_both(best_efficiency)):
