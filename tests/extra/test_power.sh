@@ -11,6 +11,7 @@ cat >case.yaml <<'end'
 format: 1
 name: x
 time: {end: 6, shedding_interval: 0.05, output_interval: 0.05, checkpoint_interval: 1}
+wake: {lifetime: 3 beats}
 fish: [{force: reactive, nodes: 7, sheet_points: 9, body: {tail_thickness: 0.3}}]
 end
 same() { /usr/bin/python3 "$root/tests/run/same_result.py" "$@"; }

@@ -487,7 +487,7 @@ check what_a_killed_study_finished_stays test "$code" = 0 -a "$(changed killed/m
 start_long shot
 read -ra members <"/proc/$study/task/$study/children"
 kill -KILL "${members[0]}"
-sleep 0.5
+wait_for test -e shot/member-0003.nc  # the next one has its turn
 kill -INT "$study"
 wait "$study" 2>/dev/null
 check a_killed_member_is_reported grep -q 'killed by signal 9 (Killed)' shot/member-000[123].failed
