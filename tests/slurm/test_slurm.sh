@@ -113,7 +113,7 @@ check nothing_has_run test ! -e array/member-0000.nc
 check it_is_submitted array/submit.sh
 check the_results_are_gathered_after_the_last_member wait_for 60 grep -q 'members in .* are not complete' array/study.txt
 check the_complete_members_are_there test "$(grep -c ' complete$' array/study.txt)" = 3
-check a_failed_member_is_reported grep -q '^member 1 failed: limited by solver.max_steps at t = ' array/study.txt
+check failed_members_are_reported grep -q '^3 members (1, 3, 5) failed: limited by solver.max_steps at t = ' array/study.txt
 check a_bundle_goes_on_after_a_failure test -e array/member-0003.nc -a -e array/member-0005.nc
 check study_nc_is_there test -s array/study.nc
 "$program" study array/study.yaml -o array -q >again 2>&1
