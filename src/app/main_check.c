@@ -146,21 +146,25 @@ enum status main_check(const struct request *request) {
         TRY(status);
     }
 
-    // every member of a search for steady states
-    for (int m = 0; checked.is_study && sweep_is_steady(&values) && m < n; m++) {
+    // the members of a search for steady states: all of a short sweep, as many of a long one as the time permits
+    const double begun = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
+    int n_examined = 0;
+    for (int m = 0; checked.is_study && sweep_is_steady(&values) && n_examined < n; m = (m + step) % n) {
+        if (n_examined > 0 && clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - begun > time_limit) break;
+        n_examined++;
         struct case_values member;
         TRY(case_member(&member, &values, m));
         const enum status status = steady_refuse(&member);
         case_free(&member);
         if (status == STATUS_OK) continue;
         if (status != STATUS_CASE) return status;
-        if (checked.n_refused++ > 0) continue;
+        if (checked.n_refused++ > 0 && m > checked.first_refused) continue;
         checked.first_refused = m;
         snprintf(checked.failure, sizeof checked.failure, "%s", status_message());
     }
     if (checked.n_refused > 0) {
         return status_fail(STATUS_CASE, "%s: %d of %d members cannot have a steady state; member %d (%s): %s",
-                           request->positional, checked.n_refused, n, checked.first_refused,
+                           request->positional, checked.n_refused, n_examined, checked.first_refused,
                            sweep_member_text(request->arena, &values, checked.first_refused), checked.failure);
     }
 
