@@ -194,7 +194,9 @@ verify: deps  ## check the program against classical results (minutes): build/ve
 numbers: deps  ## list output and tables of README.md and doc/*.md that differ from the program (an hour); WRITE=1: replace
 	@$(parallel) all
 	@code=0; scripts/documents.py $(if $(WRITE),--write) README.md doc/*.md || code=1; \
-	scripts/measure.py $(if $(WRITE),--write,--compare) README.md doc/*.md || code=1; exit $$code
+	for script in $(filter-out %/tables.py,$(wildcard scripts/measure/*.py)); do \
+	    $$script $(if $(WRITE),--write,--compare) || code=1; \
+	done; exit $$code
 
 figures: deps  ## draw the figures of the documents that are older than case, script or results (LIST=1: say which; ALL=1; NAME=...)
 	@scripts/install-deps.sh python3-pil
@@ -221,16 +223,8 @@ fuzz: deps  ## mutate cases, results and checkpoints for TIME seconds, with the 
 
 fuzz-programs: $(program) $(fuzz_programs)
 
-# the program that doc/performance.md compares with
-commit_before = 34de7f766241
-program_before = $(B)/before/build/shoal
-
-bench: $(program) $(bench_programs) $(program_before)  ## measure: inner loops, phases, schools, whole runs (doc/performance.md)
+bench: $(program) $(bench_programs)  ## measure: inner loops, phases, schools, whole runs (doc/performance.md)
 	@scripts/bench.sh $(B)
-
-$(program_before):
-	@mkdir -p $(B)/before && git archive $(commit_before) | tar -x -C $(B)/before
-	@$(MAKE) -C $(B)/before B=build build/shoal
 
 clean:  ## remove everything that was built
 	$(quiet)rm -rf build build-sanitize build-sanitize-clang build-sanitize-thread build-fuzzer
@@ -288,7 +282,7 @@ install: $(program) $(library) $(shared) $(manual) $(completion)  ## install pro
 	$(quiet)install -m 644 cases/article/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/article'
 	$(quiet)install -m 644 cases/include/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/include'
 	$(quiet)install -m 644 cases/studies/*.yaml cases/studies/*.csv '$(DESTDIR)$(prefix)/share/shoal/cases/studies'
-	$(quiet)install -m 755 $(filter-out scripts/make-% scripts/verify.py scripts/measure.py scripts/documents.py scripts/figures.py scripts/drawings.py scripts/mutants.py scripts/article.py,$(wildcard scripts/*.py)) '$(DESTDIR)$(prefix)/share/shoal/scripts'
+	$(quiet)install -m 755 $(filter-out scripts/make-% scripts/verify.py scripts/documents.py scripts/figures.py scripts/drawings.py scripts/mutants.py scripts/article.py,$(wildcard scripts/*.py)) '$(DESTDIR)$(prefix)/share/shoal/scripts'
 	$(quiet)install -d '$(DESTDIR)$(python_modules)/shoal' '$(DESTDIR)$(prefix)/share/shoal/doc/'{examples,figures/gallery}
 	$(quiet)rm -f '$(DESTDIR)$(python_modules)/shoal.py'
 	$(quiet)install -m 644 scripts/shoal/*.py '$(DESTDIR)$(python_modules)/shoal'

@@ -96,8 +96,8 @@ bench phases "$cases" | tee phases.txt
 heading 'Schools with full wakes (tests/bench/phases.c)'
 bench phases "$cases" --schools | tee schools.txt
 
-heading 'CPU time and errors against the program before'
-/usr/bin/python3 "$root/scripts/measure.py" --program "$program" --before "$build/before/build/shoal" ratios real_time growth peers
+heading 'Tables of doc/performance.md'
+"$root/scripts/measure/performance.py" --program "$program" real_time growth peers
 
 heading 'Whole processes with their output'
 printf '%-12s %7s %8s %8s %8s %7s %7s %7s %7s\n' '' threads 'wall s' 'cpu s' 'x real' MB steps Newton Jacob.

@@ -5,7 +5,7 @@
 
 In doc/*.md, README.md and CONTRIBUTING.md: files and folders, links and their anchors, names with a low line or brackets
 (functions, keys, variables; in doc/model.md those in backticks), tests of `make test TEST=...`, tables of
-`scripts/measure.py NAME`, sections of `build/verify/verify NAME`. In the comments of src, include and tests: files, and
+`scripts/measure/DOCUMENT.py NAME`, sections of `build/verify/verify NAME`. In the comments of src, include and tests: files, and
 sections of documents. And no two tests have one name. Fenced blocks state their language, and a block of output follows the block of
 its command (scripts/documents.py). Exit codes: 0 all is there, 1 some is not.
 """
@@ -37,7 +37,7 @@ def exists(path):
 
 def code_words():
     """Every word of the sources, and every word between quotes or colons in them: functions, fields, keys, variables."""
-    text = "".join(read(path) for path in files("src/*/*", "include/*", "scripts/*", "scripts/shoal/*.py", "tests/*.[ch]", "tests/*/*", "Makefile",
+    text = "".join(read(path) for path in files("src/*/*", "include/*", "scripts/*", "scripts/*/*.py", "tests/*.[ch]", "tests/*/*", "Makefile",
                                                 "cases/*.yaml", "cases/*/*.yaml", "doc/examples/*") if "." in path or "Makefile" in path)
     return set(re.findall(r"\w+", text))
 
@@ -71,7 +71,7 @@ def is_known(name, words):
     return name in words or ANY.search(name) or any(beginning in words for beginning in beginnings)
 
 
-def faults_of_document(path, words, tests, numerics, sections):
+def faults_of_document(path, words, tests, tables, sections):
     text = read(path)
     folder = os.path.dirname(path)
     for name in missing_paths(re.sub(r"\]\([^)]*\)", "]", text)):
@@ -104,9 +104,9 @@ def faults_of_document(path, words, tests, numerics, sections):
         for name in names.strip('"').split():
             if name not in tests:
                 yield f"there is no test called {name}"
-    for name in re.findall(r"scripts/measure\.py ([a-z]\w*)", text):
-        if name not in numerics:
-            yield f"scripts/measure.py has no table {name}"
+    for script, name in re.findall(r"scripts/measure/(\w+)\.py\s([a-z]\w*)", text):
+        if name not in tables.get(script, []):
+            yield f"scripts/measure/{script}.py has no table {name}"
     for name in re.findall(r"verify/verify ([a-z]\w*)", text):
         if name not in sections:
             yield f"verify has no section {name}"
@@ -127,10 +127,10 @@ def faults_of_source(path):
 
 def main():
     words, tests = code_words(), test_names()
-    numerics = set(re.findall(r"\w+", read("scripts/measure.py")))
+    tables = {os.path.basename(p)[:-3]: re.findall(r"^@table.*?^def (\w+)", read(p), re.M | re.S) for p in files("scripts/measure/*.py")}
     sections = set(re.findall(r"\w+", "".join(read(p) for p in files("tests/verify/*.c"))))
     faults = [(path, fault) for path in files("doc/*.md", "README.md", "CONTRIBUTING.md")
-              for fault in faults_of_document(path, words, tests, numerics, sections)]
+              for fault in faults_of_document(path, words, tests, tables, sections)]
     sources = files("src/*/*.[ch]", "include/*.h", "tests/*.[ch]", "tests/*.sh", "tests/*/*.[ch]", "tests/*/*.sh", "scripts/*.sh")
     faults += [(path, fault) for path in sources for fault in faults_of_source(path)]
     faults += [("tests", f"{tests.count(name)} tests are called {name}") for name in sorted(set(tests)) if tests.count(name) > 1]

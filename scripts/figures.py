@@ -160,7 +160,7 @@ FIGURES = {
                      "plot.py study follower_map/study.nc --of cost_of_transport --relative --states aside.nc near.nc far.nc "
                      "-- follower_map.png"],
     "validation": ["scripts/validation.py validation.png"],
-    "real_time": ["scripts/measure.py --picture real_time.png"],
+    "real_time": ["scripts/measure/performance.py --picture real_time.png"],
     "best_gait": ["doc/examples/best_gait.py --figure best_gait.png"],
     "hold_place": ["doc/examples/hold_place.py --figure hold_place.png"],
 }

@@ -1,0 +1,121 @@
+#!/usr/bin/python3
+"""Measure the tables of doc/performance.md and the speed that README.md states.
+
+How to call it: scripts/measure/tables.py.
+"""
+
+import math
+import os
+import re
+import resource
+import subprocess
+import time
+
+import numpy as np
+from matplotlib import pyplot
+from tables import CASES, COUNTS, DEFAULT, HERE, lattice, main, n_events, nose_and_tail, per_event, rows_of, short, table
+
+from shoal._plot_style import LINES, STYLE  # found by tables
+
+
+@table("fish", "nodes", "unknowns", "entries of the factors, blocks", "klu", "GMRES iterations per event", "CPU time of klu over blocks")
+def linear(bench):
+    """solver.linear blocks against klu: factors and CPU time of close fish at cruising speed (ten minutes)"""
+    for n, nodes, end in ((1, 13, 2), (1, 25, 2), (1, 50, 1), (1, 100, 0.4), (1, 199, 0.2), (4, 13, 1), (4, 25, 1), (4, 50, 0.4),
+                          (4, 100, 0.1), (16, 13, 0.4), (16, 25, 0.2)):
+        text = lattice(n, (1.2, 0.4), end, 0.02, end, f"nodes: {nodes}, start: {{speed: 0.8}}")
+        runs, times = [], [math.inf, math.inf]
+        for repeat in range(3 if n == 1 else 1):
+            for i, kind in enumerate(("blocks", "klu")):
+                before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+                run = bench.run(text, f"solver.linear={kind}", "solver.threads=1")
+                times[i] = min(times[i], resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before)
+                # NetCDF reads lazily: keep the values before the next run replaces the file
+                if repeat == 0:
+                    runs.append((int(run["factor_non_zeros"][-1]), int(run["gmres_iterations"][-1]) / n_events(run),
+                                 int(run["differential_unknowns"].sum() + run["algebraic_unknowns"].sum())))
+        yield (n, nodes, f"{runs[0][2]:,}", f"{runs[0][0]:,}", f"{runs[1][0]:,}", f"{runs[0][1]:.1f}",
+               f"{times[1] / times[0]:.2f}")
+
+
+@table("the article's diamond, 5 s", "nose or tail [L]", *COUNTS, "evaluations", "CPU time [s]")
+def peers(bench):
+    """counts and time of the article's diamond: its own scheme, and the converged model by implicit and explicit methods (a minute)"""
+    with open(bench.case("diamond"), encoding="utf-8") as file:
+        converged = file.read().replace("include/article.yaml", f"{CASES}/include/article.yaml")
+    own = re.sub("(?m)^include:.*$", "preset: published", converged)
+    right = nose_and_tail(bench.run(converged, "time.end=5", "solver.rtol=1e-9", "solver.max_steps=100000"))
+    for name, text, *keys in (("the article's scheme, ida, rtol 1e-6", own, "solver.rtol=1e-6"), ("converged, ida", converged),
+                              *((f"converged, {method}", converged, f"solver.method={method}")
+                                for method in ("heun", "rk4", "dormand_prince"))):
+        run = bench.run(text, "time.end=5", "solver.max_steps=100000", *keys)
+        error = max(float(np.linalg.norm(np.subtract(a, b))) for a, b in zip(nose_and_tail(run), right))
+        yield (name, short(error) if text is converged else "", *per_event(run), f"{run['residual_evaluations'][-1] / n_events(run):.1f}",
+               f"{bench.seconds(text, 'time.end=5', 'solver.max_steps=100000', 'solver.threads=1', *keys, repeats=1):.2f}")
+
+
+@table("fish", "CPU time", "wall time, two threads")
+def real_time(bench):
+    """time per simulated second of 1 to 256 default fish at cruising speed over 3.2 s (minutes)"""
+    for n in (1, 4, 16, 64, 256):
+        text = lattice(n, (2, 1), 3.2, 0.02, 0.2, "start: {speed: 0.81}")
+        new = bench.seconds(text, "solver.threads=1", repeats=3 if n < 64 else 1) / 3.2
+        begin = time.perf_counter()
+        bench.run(text, "solver.threads=2")
+        yield n, f"{new:.2g}", f"{(time.perf_counter() - begin) / 3.2:.2g}"
+
+
+@table("fish", "CPU time of 20 events from the start [s]", "exponent", "memory [MB]", "exponent")
+def growth(bench):
+    """CPU time and memory over the number of default fish at cruising speed, one thread (two minutes)"""
+    last = None
+    for n in (16, 64, 256, 1024):
+        with open(os.path.join(bench.folder, "case.yaml"), "w", encoding="utf-8") as file:
+            file.write(lattice(n, (2, 1), 0.4, 0.02, 0.4, "start: {speed: 0.81}"))
+        command = [bench.program, "run", "case.yaml", "-q", "--force", "--set", "solver.threads=1"]
+        run = subprocess.Popen(command, cwd=bench.folder, stderr=subprocess.DEVNULL)
+        used = os.wait4(run.pid, 0)[2]
+        now = used.ru_utime, used.ru_maxrss / 1000
+        orders = [f"{math.log(a / b) / math.log(4):.2f}" for a, b in zip(now, last)] if last else ["", ""]
+        yield n, f"{now[0]:.2g}", orders[0], f"{now[1]:.0f}", orders[1]
+        last = now
+
+
+@table("force", "span", "CPU time over reactive", "of 16 fish", *COUNTS)
+def forces(bench):
+    """cost of a default fish (10 s) and of 16 fish (2 s) with three forces, one thread (minutes)"""
+    keys = [("fish[*].force=reactive",)]
+    keys += [("fish[*].force=pressure", f"fish[*].pressure.span={span}") for span in ("infinite", "finite")]
+    one, many = DEFAULT.replace("end: 8", "end: 10"), lattice(16, (1.5, 1.5), 2)
+    seconds = []
+    for text in one, many:
+        # alternate, so that the load of the machine is the same for all
+        passes = [[bench.seconds(text, "solver.threads=1", *force) for force in keys] for _ in range(3)]
+        seconds.append([min(times) for times in zip(*passes)])
+    for i, force in enumerate(keys):
+        names = [key.split("=")[1] for key in force]
+        yield (*(names + [""])[:2], *(f"{times[i] / times[0]:.2f}" for times in seconds),
+               *per_event(bench.run(one, *force)))
+
+
+def draw_real_time(path):
+    """draw the table real_time of doc/performance.md"""
+    with open(os.path.join(HERE, "doc/performance.md"), encoding="utf-8") as file:
+        lines = file.read().split("`scripts/measure/performance.py real_time`", 1)[1].split("\n\n", 2)[1]
+    rows = rows_of(lines.split("\n"))
+    with pyplot.rc_context(STYLE):
+        figure, axes = pyplot.subplots(figsize=(4.5, 3), layout="constrained")
+        for i, (k, label) in enumerate(((-2, "CPU time, one thread"), (-1, "wall time, two threads"))):
+            x, y = zip(*((int(row[0]), float(row[k])) for row in rows if row[k]))
+            axes.loglog(x, y, marker="os"[i], ms=4, color=LINES[i], label=label)
+        axes.axhline(1, color="0.3", lw=0.8, ls=":")
+        axes.annotate("real time", (1, 1), (0, 2), textcoords="offset points", size=7)
+        axes.set(xlabel="fish", ylabel="time per simulated time [s/s]")
+        axes.set_xticks([int(row[0]) for row in rows], [row[0] for row in rows])
+        axes.minorticks_off()
+        axes.legend(fontsize=7)
+        figure.savefig(path)
+
+
+if __name__ == "__main__":
+    main("README.md", "doc/performance.md", picture=draw_real_time)
