@@ -289,6 +289,16 @@ static enum status verlet_begin(void *data, double t, const struct integrator_wa
     return STATUS_OK;
 }
 
+// Advance the velocities by the acceleration over h/2. Without water the momentum over mass is the velocity; it must
+// follow, because the velocities at an event are found from it.
+static void verlet_kick(const struct fish *fish, double h, double *y) {
+    const struct layout *const at = &fish->at;
+    for (int k = 0; k < 2 * fish->n_nodes; k++) {
+        y[at->vx + k] += h / 2 * y[at->ax + k];
+        if (fish_has_momentum(fish)) y[at->px + k] = y[at->vx + k];
+    }
+}
+
 static enum status verlet_step(void *data, double t, double *reached) {
     struct verlet *const solver = data;
     struct residual *const residual = solver->residual;
@@ -301,10 +311,8 @@ static enum status verlet_step(void *data, double t, double *reached) {
     // half a kick, and the drift
     for (int f = 0; f < school->n_fish; f++) {
         const struct layout *const at = &school->fish[f].at;
-        for (int k = 0; k < 2 * school->fish[f].n_nodes; k++) {
-            y[at->vx + k] += h / 2 * y[at->ax + k];
-            y[at->x + k] += h * y[at->vx + k];
-        }
+        verlet_kick(&school->fish[f], h, y);
+        for (int k = 0; k < 2 * school->fish[f].n_nodes; k++) y[at->x + k] += h * y[at->vx + k];
     }
     enum status status = contact_find(residual->contact, state, now, y);
     if (status > 0) return verlet_unstable(solver, now);
@@ -319,8 +327,8 @@ static enum status verlet_step(void *data, double t, double *reached) {
         residual_balance(residual, f, y, value);
         for (int k = 0; k < 2 * fish->n_nodes; k++) {
             y[at->ax + k] = -value[at->ax + k] / fish->mass[k % fish->n_nodes];
-            y[at->vx + k] += h / 2 * y[at->ax + k];
         }
+        verlet_kick(fish, h, y);
     }
     solver->counts.steps++;
     solver->counts.steps_of_order[solver->counts.order - 1]++;

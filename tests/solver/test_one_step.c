@@ -257,6 +257,24 @@ TEST(steps_converge_with_the_square_of_their_length) {
     NEAR(log2(imbalance[1] / imbalance[2]), 2, 0.3, 0);
 }
 
+// a nascent stretch begins anew at every event, which finds the velocities of a default fish from its momenta
+TEST(verlet_keeps_the_velocities_at_events) {
+    static const char text[] =
+        "time: {end: 0.4, shedding_interval: 0.02}\nfluid: {density: 0}\nsheet: {kutta: edge}\n"
+        "fish: [{nodes: 7, body: {modulus: 1.0e+5, " NO_DAMPING "}}]\n";
+    double tail[2];
+    for (int i = 0; i < 2; i++) {
+        struct simulation *const simulation =
+            open_with(text, i ? "method: verlet, step: 1.0e-5" : "method: rk4, step: 1.0e-4");
+        school_measure(simulation, 0.4);
+        const struct fish *const fish = &simulation->school->fish[0];
+        tail[i] = simulation->state->y[fish->at.y + fish->n_nodes - 1];
+    }
+    BELOW(1e-3, fabs(tail[0]));
+    // the error of verlet falls with the square of the step
+    NEAR(tail[1], tail[0], 1e-6, 0);
+}
+
 TEST(steps_back_lead_to_the_start) {
     // without a muscle and with the signs of all velocities changed the method goes back the way it came
     struct simulation *const simulation =
