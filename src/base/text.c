@@ -53,6 +53,15 @@ void text_print_member(FILE *stream, const char *before, const char *name, const
     text_print_json(stream, string);
 }
 
+void text_print_csv(FILE *stream, const char *string) {
+    fputc('"', stream);
+    for (; *string; string++) {
+        if (*string == '"') fputc('"', stream);
+        fputc(*string, stream);
+    }
+    fputc('"', stream);
+}
+
 void text_print_clean(FILE *stream, const char *string) {
     for (const unsigned char *c = (const unsigned char *)string; *c; c++) {
         // U+0080 to U+009F are control characters too

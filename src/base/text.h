@@ -35,6 +35,9 @@ void text_add_word(struct text *text, const char *word);
 /* Print a string of JSON with quotes; null if string is NULL. */
 void text_print_json(FILE *stream, const char *string);
 
+/* Print a field of comma-separated values in quotes, with quotes in it doubled (RFC 4180). */
+void text_print_csv(FILE *stream, const char *string);
+
 /* Print a member of an object of JSON after some text: BEFORE"NAME": string. */
 void text_print_member(FILE *stream, const char *before, const char *name, const char *string);
 

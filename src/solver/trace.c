@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "school/residual.h"
 
 struct trace {
@@ -70,14 +71,10 @@ void trace_write(struct trace *trace, const struct school *school, const struct 
         return;
     }
 
-    // the name of a fish in quotes, with quotes in it doubled
     const struct unknown_place place = residual_place(school, attempt->worst);
-    fprintf(file, "%s[%d],\"", place.name, place.index);
-    for (const char *c = school->fish[place.fish].name; *c; c++) {
-        if (*c == '"') fputc('"', file);
-        fputc(*c, file);
-    }
-    fprintf(file, "\",%.3g\n", attempt->worst_correction);
+    fprintf(file, "%s[%d],", place.name, place.index);
+    text_print_csv(file, school->fish[place.fish].name);
+    fprintf(file, ",%.3g\n", attempt->worst_correction);
     if (ferror(file) && trace->error == 0) trace->error = errno;
 }
 

@@ -989,13 +989,19 @@ static void write_csv_row(const struct csv_row *row, const char *key, const char
     const struct sweep_axis *const axis = &row->sweep->study.sweep[0];
     const struct member_file_quantity *const quantity = quantity_of(study, row->q);
     const char *const word = error_relation_words[study->relation];
-    fprintf(row->file, "\"%s\",%s%s%s,%s,%.9g,%s,%s,%.3g,%.3g,%.3g,\"%s\"",
-            quantity->of_fish ? study->values->school.fish[row->f].name : "", word, *word ? "_" : "", quantity->name,
+    text_print_csv(row->file, quantity->of_fish ? study->values->school.fish[row->f].name : "");
+    fprintf(row->file, ",%s%s%s,%s,%.9g,%s,%s,%.3g,%.3g,%.3g,", word, *word ? "_" : "", quantity->name,
             study->relation == ERROR_RATIO ? "1" : quantity->unit, value, key, levels, order, error,
-            100 * error / fabs(study->value[error_plan_place(study, row->q, row->f)]), verdict);
+            100 * error / fabs(study->value[error_plan_place(study, row->q, row->f)]));
+    text_print_csv(row->file, verdict);
     for (int c = 0; c < row->sweep->n_swept; c++) {
         const char *const swept = axis->value[study->base * axis->n_keys + c];
-        fprintf(row->file, strchr(swept, ',') ? ",\"%s\"" : ",%s", swept);
+        fputc(',', row->file);
+        if (strpbrk(swept, ",\"\n")) {
+            text_print_csv(row->file, swept);
+        } else {
+            fputs(swept, row->file);
+        }
     }
     fputs("\n", row->file);
 }

@@ -156,6 +156,16 @@ TEST(a_string_of_json_has_no_bare_quote_or_control_character) {
     assert_string_equal(written, "\"a \\\"fish\\\" \\\\ \\u000a\\u0001\xc3\xa9\"null");
 }
 
+TEST(a_field_of_a_table_keeps_quotes_and_commas) {
+    char written[64] = "";
+    FILE *const stream = fmemopen(written, sizeof written, "w");
+    assert_non_null(stream);
+    text_print_csv(stream, "a \"fish\", \n");
+    text_print_csv(stream, "");
+    fclose(stream);
+    assert_string_equal(written, "\"a \"\"fish\"\", \n\"\"\"");
+}
+
 // ---- the examples of RFC 4648, section 10
 
 static void is_written_as(const char *bytes, const char *want) {

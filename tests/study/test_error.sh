@@ -238,11 +238,11 @@ time: {end: 0.1, shedding_interval: 0.05, output_interval: 0.05}
 fluid: {density: 0}
 defaults: {fish: {nodes: 7, motion: {prescribed: all, speed: 1}, wave: {amplitude: 0.3}}}
 fish: [{name: a}, {name: b, start: {position: [0, 2]}}, {name: c, start: {position: [0, 4]}},
-       {name: d, start: {position: [0, 6]}}, {name: e, start: {position: [0, 8]}}]
+       {name: d, start: {position: [0, 6]}}, {name: 'e "5", last', start: {position: [0, 8]}}]
 sweep: [{key: "fish[*].motion.speed", values: [1, 2]}, {key: "fish[*].wave.frequency", values: [1, 2]}]
 expect:
   - {of: speed, where: ["fish[*].wave.frequency=2"], most: 1.9}
-  - {of: speed, fish: e, where: ["fish[*].motion.speed=2", "fish[*].wave.frequency=1"], least: 1.999}
+  - {of: speed, fish: 'e "5", last', where: ["fish[*].motion.speed=2", "fish[*].wave.frequency=1"], least: 1.999}
 error: {of: [speed, steps], confirm: false, keys: {nodes: [9, 13], rtol: [1e-4, 1e-5]}}
 end
 # more processes than members: the time of the longest, of which the table prints two digits
@@ -257,7 +257,7 @@ check each_row_has_values_of_its_point test "$(awk '$1 ~ /^[0-3]$/ && $5 == $2 &
     $3 == $1 % 2 + 1 && $4 ~ /^[a-d]$/ && $6 < 1e-9 && $7 < 1e-7 && $8 > 3 && $NF == "rtol"' out | wc -l)" = 16
 check the_other_fish_are_in_the_files has out 'The first 4 of 5 fish; error.csv and study.nc have all.'
 check a_point_of_one_key_is_found eval 'has out "speed, 10 values" && has out "MISSED   the largest is 2, expected at most 1.9"'
-check a_point_of_two_keys_is_found eval 'has out "speed of e, 1 value" && has out "met      the smallest is 2"'
+check a_point_of_two_keys_is_found eval 'has out "speed of e \"5\", last, 1 value" && has out "met      the smallest is 2"'
 run study five.yaml -o tabled --set error=none
 check a_study_shows_four_fish_too eval 'has out "The first 4 of 5 fish; study.nc has all." && grep -qE "^ +3 +2 +2 +d " out'
 # with given thicknesses no other number of nodes is a case
