@@ -45,9 +45,7 @@ static enum status check_start(struct checked *checked, int member, const struct
     char line[WARNING_BYTES];
     simulate_measure(simulation);
     for (enum warning w = 0; w < N_WARNINGS; w++) {
-        if (!warnings_line(w, simulation->school, simulation->state, simulation->diagnostics,
-                           simulation->residual->scratch, line))
-            continue;
+        if (!warnings_line(w, simulation->residual, simulation->state, simulation->diagnostics, line)) continue;
         if (checked->n_warned[w]++ > 0) continue;
         checked->first_warned[w] = member;
         snprintf(checked->warning[w], sizeof checked->warning[w], "%s", line);

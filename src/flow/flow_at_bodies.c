@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/mathematics.h"
 #include "flow/flow.h"
 #include "flow/others.h"
 
@@ -330,5 +331,109 @@ void flow_field(struct flow *flow, const struct state *state, const struct targe
             if (fish_walls_distance(&school->walls, at.y[i]) >= 0) continue;
             for (size_t k = 0; k < sizeof values / sizeof *values; k++) values[k][i] = NAN;
         }
+    }
+}
+
+// ---- what decay has taken
+
+// number of vortices or markers of a wake, the oldest ones, that have lost some strength
+static int count_decaying(const struct wake *wake, const struct school *school, double t) {
+    int n = 0;
+    while (n < wake->n_vortex && wake_strength(school, t - wake->birth[n]) < 1) n++;
+    return n;
+}
+
+// whether one of n places is near one of the points
+static bool is_near_any(const struct targets *points, int n, const double *x, const double *y, double distance) {
+    const struct box around = box_widen(box_around(points->n, points->x, points->y), distance);
+    for (int i = 0; i < n; i++) {
+        if (x[i] < around.low[0] || x[i] > around.high[0] || y[i] < around.low[1] || y[i] > around.high[1]) continue;
+        for (int p = 0; p < points->n; p++) {
+            const double r[2] = {points->x[p] - x[i], points->y[p] - y[i]};
+            if (r[0] * r[0] + r[1] * r[1] < distance * distance) return true;
+        }
+    }
+    return false;
+}
+
+// set the sources of a wake, middles, to what they would be without decay, less what they are
+static void place_decayed(struct sheet *sheet, const struct flow *flow, const struct state *state, int g) {
+    struct school whole = *flow->school;
+    whole.lifetime = INFINITY;
+    const struct fish *const fish = &flow->school->fish[g];
+    const struct wake *const wake = &state->wake[g];
+    double tail[2];
+    fish_tail(fish, state->y, tail);
+    sheet_build(sheet, fish, &whole, wake, state->t);
+    sheet_place(sheet, &whole, wake, state->t, 0);
+    sheet_place_nascent(&sheet->middles, &whole, wake, state->t, 0, tail, NULL, state->y[fish->at.circulation]);
+
+    const struct sources *const now = &flow->fish[g].wake.middles.sources, *const lost = &sheet->middles.sources;
+    for (int i = 0; i < lost->n; i++) {
+        lost->q[i] -= now->q[i];
+        lost->dx[i] -= now->dx[i];
+        lost->dy[i] -= now->dy[i];
+    }
+}
+
+void flow_find_decayed(struct flow *flow, const struct state *state, double *part) {
+    ARENA(arena, flow->arena, "lost velocities");
+    const double near = 0.25, far = 1;  // lengths; alternating vortices farther away hardly act
+    const struct school *const school = flow->school;
+    struct sheet sheet = {.arena = NULL};
+    struct targets *at;
+    double *values[4]; /* velocity that is left, and that is lost */
+    int *n_decaying, n_near = 0;
+    NEW(arena, at, school->n_fish);
+    NEW(arena, n_decaying, school->n_fish);
+    for (int i = 0; i < 4; i++) NEW(arena, values[i], flow->n_points);
+    memset(part, 0, (size_t)school->n_fish * sizeof *part);
+    for (int g = 0; g < school->n_fish; g++) n_decaying[g] = count_decaying(&state->wake[g], school, state->t);
+
+    // the bodies in the decaying part of the wake of another fish
+    flow_place(flow, state, state->t, state->y);
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        const int first = flow->points[f].first;
+        struct targets points = {.n = fish->n_control, .x = flow->x + first, .y = flow->y + first};
+        points.half = flow->kernel->has_legs ? fish->point_half : NULL;
+        for (int g = 0; g < school->n_fish && at[f].n == 0; g++) {
+            const struct wake *const wake = &state->wake[g];
+            if (g == f || !is_near_any(&points, n_decaying[g], wake->x, wake->y, near * fish->length)) continue;
+            at[f] = points;
+            n_near++;
+        }
+    }
+
+    // wake after wake, its velocity at these bodies
+    for (int g = 0; g < school->n_fish && n_near > 0; g++) {
+        const struct wake *const wake = &state->wake[g];
+        const struct box around = box_around(wake->n_vortex, wake->x, wake->y);
+        if (n_decaying[g] > 0) {
+            sheet_reserve(arena, &sheet, wake->n_vortex);
+            place_decayed(&sheet, flow, state, g);
+        }
+        for (int f = 0; f < school->n_fish; f++) {
+            struct targets points = at[f];
+            const struct box body = box_around(points.n, points.x, points.y);
+            if (f == g || points.n == 0 || box_gap(&body, &around) > far * school->fish[f].length) continue;
+            const struct kernel_pair pair = flow_pair_of(flow, f, g, &(struct flow_sum){WAKE_AT_BODY, false});
+            for (int is_lost = 0; is_lost < (n_decaying[g] > 0 ? 2 : 1); is_lost++) {
+                const struct sources *const of = is_lost ? &sheet.middles.sources : &flow->fish[g].wake.middles.sources;
+                points.u = values[2 * is_lost] + flow->points[f].first;
+                points.v = values[2 * is_lost + 1] + flow->points[f].first;
+                kernel_induce(&pair, of, (struct range){0, of->n}, &points);
+            }
+        }
+    }
+
+    for (int f = 0; f < school->n_fish; f++) {
+        double lost = 0, whole = 0;
+        for (int i = flow->points[f].first; i < flow->points[f].first + at[f].n; i++) {
+            const double u = values[0][i] + values[2][i], v = values[1][i] + values[3][i];
+            lost += values[2][i] * values[2][i] + values[3][i] * values[3][i];
+            whole += u * u + v * v;
+        }
+        part[f] = whole > 0 ? sqrt(lost / whole) : 0;
     }
 }

@@ -38,6 +38,11 @@ void flow_slip(const struct flow *flow, int f, const double *y, double slip[2]);
  * on this function. */
 void flow_field(struct flow *flow, const struct state *state, const struct targets *at, bool is_steady);
 
+/* For every fish, the part of the velocity of other fish's wakes that is lost by decay, at the event of the state: root
+ * mean squares over the control points; 0 if no decaying vortex or marker of another fish is within a quarter of the
+ * length of the body. part: (n_fish). */
+void flow_find_decayed(struct flow *flow, const struct state *state, double *part);
+
 // ---- sums of one kind of sources of many fish, for flow_at_wake.c too
 
 /* Select the sums at bodies, or at wakes, that are by the tree; n_targets: of each fish. */

@@ -60,9 +60,7 @@ void record_notes_write(struct result_file *file, const struct simulation *simul
     char line[WARNING_BYTES], lines[(N_WARNINGS + 4) * (WARNING_BYTES + 1)];
     size_t length = (size_t)snprintf(lines, sizeof lines, "%s", found);
     for (enum warning w = 0; w < N_WARNINGS; w++) {
-        if (!warnings_line(w, simulation->school, simulation->state, simulation->diagnostics,
-                           simulation->residual->scratch, line))
-            continue;
+        if (!warnings_line(w, simulation->residual, simulation->state, simulation->diagnostics, line)) continue;
         length += (size_t)snprintf(lines + length, sizeof lines - length, "%s%s", length > 0 ? "\n" : "", line);
         if (warn) warn(line, data);
     }

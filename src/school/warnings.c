@@ -7,6 +7,7 @@
 
 #include "base/mathematics.h"
 #include "body/rod.h"
+#include "flow/flow_at_bodies.h"
 
 /* One fish, and all that its warnings read. */
 struct subject {
@@ -306,15 +307,32 @@ const struct warning_words warnings_words[N_WARNINGS] = {
                        "may create energy; the other warnings for this fish are contact, crossing and divergence"},
     [WARNING_PITCH] = {"fast pitch", "prescribed pitch moves the tail at more than 0.6 of the speed through the water"},
     [WARNING_STALL] = {"a stalled foil", "prescribed motion, drift above 0.1 and separation_share above 0.5"},
+    [WARNING_WAKE] =
+        {"a faded wake",
+         "at the end, a body lies within a quarter of its length of decaying markers or vortices of another "
+         "fish, and the decay takes more than 5 % of the velocity that the wakes of other fish induce there"},
 };
 
+// the name of the worst of n fish
+enum { WHO_BYTES = 96 };
+static void name_worst(const struct school *school, int worst, int n, char who[WHO_BYTES]) {
+    snprintf(who, WHO_BYTES, n > 1 ? "%.40s (the worst of %d fish)" : "%.40s", school->fish[worst].name, n);
+}
+
+// the largest part of the velocity of wakes that may decay at a body
+static const double most_decayed = 0.05;
+
 // write the line of a warning about the school, if it applies
-static bool school_warning(enum warning warning, const struct school *school, const struct state *state,
+static bool school_warning(enum warning warning, struct residual *residual, const struct state *state,
                            const struct diagnostics *diagnostics, char line[WARNING_BYTES]) {
+    const struct school *const school = residual->school;
     const struct closest *const closest = state->closest;
     const bool repel = school->contact == CONTACT_REPEL;
-    const double *const residual = diagnostics->momentum_balance, balance = hypot(residual[0], residual[1]);
+    const double balance = hypot(diagnostics->momentum_balance[0], diagnostics->momentum_balance[1]);
     double worst[N_DIVERGENCE], period = 0, usual = 0, limit = 0.01 * diagnostics->momentum_size;
+    double *const lost = residual->scratch;
+    char who[WHO_BYTES];
+    int n = 0, worst_fish = 0;
     long diverged = state->diverged;
 
     switch (warning) {
@@ -370,6 +388,21 @@ static bool school_warning(enum warning warning, const struct school *school, co
                      balance, diagnostics->momentum_size);
             return true;
 
+        case WARNING_WAKE:
+            flow_find_decayed(residual->flow, state, lost);
+            for (int f = 0; f < school->n_fish; f++) {
+                if (school->fish[f].force == FORCE_PUBLISHED) lost[f] = 0;
+                n += lost[f] > most_decayed;
+                if (lost[f] > lost[worst_fish]) worst_fish = f;
+            }
+            name_worst(school, worst_fish, n, who);
+            snprintf(
+                line, WARNING_BYTES,
+                "%s lies in the decaying part of another wake: %.0f %% of the velocity of wakes is lost there (limit "
+                "%.0f %%): increase wake.lifetime (%.4g s), or reduce wake.decay (%.4g s)",
+                who, 100 * lost[worst_fish], 100 * most_decayed, school->lifetime, school->decay);
+            return n > 0;
+
         default: return false;
     }
 }
@@ -401,12 +434,13 @@ enum status warnings_refuse(const struct school *school, const struct state *sta
     return STATUS_OK;
 }
 
-int warnings_line(enum warning warning, const struct school *school, const struct state *state,
-                  const struct diagnostics *diagnostics, double *scratch, char line[WARNING_BYTES]) {
-    if (!of_fish[warning]) return school_warning(warning, school, state, diagnostics, line);
+int warnings_line(enum warning warning, struct residual *residual, const struct state *state,
+                  const struct diagnostics *diagnostics, char line[WARNING_BYTES]) {
+    const struct school *const school = residual->school;
+    if (!of_fish[warning]) return school_warning(warning, residual, state, diagnostics, line);
 
     // the fish with the largest size; accuracy warnings are suppressed for the published force
-    struct subject subject = {school, state, diagnostics, scratch, 0};
+    struct subject subject = {school, state, diagnostics, residual->scratch, 0};
     double most = 1;
     int n = 0, worst = 0;
     for (subject.f = 0; subject.f < school->n_fish; subject.f++) {
@@ -420,9 +454,9 @@ int warnings_line(enum warning warning, const struct school *school, const struc
     }
     if (n == 0) return 0;
 
-    char who[96];
+    char who[WHO_BYTES];
     subject.f = worst;
-    snprintf(who, sizeof who, n > 1 ? "%.40s (the worst of %d fish)" : "%.40s", school->fish[worst].name, n);
+    name_worst(school, worst, n, who);
     of_fish[warning](warning, &subject, who, line);
     return 1;
 }

@@ -23,6 +23,7 @@ enum warning {
     WARNING_FORCE,
     WARNING_PITCH,
     WARNING_STALL,
+    WARNING_WAKE,
     N_WARNINGS
 };
 enum { WARNING_BYTES = 384 /* of a line */ };
@@ -48,8 +49,8 @@ enum status warnings_refuse(const struct school *school, const struct state *sta
                             const struct diagnostics *diagnostics);
 
 /* Write the line of a warning, without a line break, and return 1; return 0 if the warning does not apply. diagnostics:
- * of the same event as the state. scratch: (n_unknowns). */
-int warnings_line(enum warning warning, const struct school *school, const struct state *state,
-                  const struct diagnostics *diagnostics, double *scratch, char line[WARNING_BYTES]);
+ * of the same event as the state, and the last sums of the residual at bodies. */
+int warnings_line(enum warning warning, struct residual *residual, const struct state *state,
+                  const struct diagnostics *diagnostics, char line[WARNING_BYTES]);
 
 #endif

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "body/rod.h"
+#include "flow/flow_at_bodies.h"
 #include "school.h"
 #include "school/diagnostics_energy.h"
 #include "school/warnings.h"
@@ -14,8 +15,7 @@
 
 static int line_of(const struct simulation *simulation, enum warning warning, char line[WARNING_BYTES]) {
     *line = 0;
-    return warnings_line(warning, simulation->school, simulation->state, simulation->diagnostics,
-                         simulation->residual->scratch, line);
+    return warnings_line(warning, simulation->residual, simulation->state, simulation->diagnostics, line);
 }
 
 static void expect_line(const struct simulation *simulation, enum warning warning, const char *part) {
@@ -26,8 +26,8 @@ static void expect_line(const struct simulation *simulation, enum warning warnin
 
 // the warnings of a simulation, one character each: contact c, a body crosses itself x, divergence i, energy e,
 // momentum o, drift d, events v, sheet s, modes m, leading edge l, controller h, cusp u, few nodes at the
-// tail t, published force p, fast pitch f, stalled foil a; the runs are short, and the warning of few beats has its own
-// test
+// tail t, published force p, fast pitch f, stalled foil a, a faded wake w; the runs are short, and the warning of few
+// beats has its own test
 static void expect_of(struct simulation *simulation, const char *expected) {
     simulate_measure(simulation);
     char line[WARNING_BYTES], found[N_WARNINGS + 1] = "";
@@ -35,7 +35,7 @@ static void expect_of(struct simulation *simulation, const char *expected) {
         if (w == WARNING_BEATS || !line_of(simulation, w, line)) continue;
         print_message("%s\n", line);
         assert_null(strchr(line, '\n'));
-        strncat(found, &"cxieo-dvsmlhutpfa"[w], 1);
+        strncat(found, &"cxieo-dvsmlhutpfaw"[w], 1);
     }
     assert_string_equal(found, expected);
 }
@@ -593,4 +593,65 @@ TEST(a_stalled_foil_is_told) {
         simulation->diagnostics->fish[0].separation_share = cases[i].share;
         expect_line(simulation, WARNING_STALL, cases[i].warns ? "60 %" : NULL);
     }
+}
+
+// ---- a follower in the decaying part of a wake
+
+#define LEADER_AND_FOLLOWER                                                                                        \
+    "time: {end: 3, shedding_interval: 0.02}\nwake: {%s}\ndefaults: {fish: {%s, nodes: 9, start: {speed: 0.8}}}\n" \
+    "fish: [{name: leader}, {name: follower, start: {position: [%s]}}]\n"
+
+TEST(a_follower_in_a_faded_wake_is_told) {
+    static const char *const finite = "force: pressure", *const infinite = "pressure: {span: infinite}",
+                             *const reactive = "force: reactive";
+    static const struct {
+        const char *wake, *fish, *place, *part;
+    } cases[] = {
+        {"lifetime: 3, decay: 2.25", finite, "1.5, 0", "follower lies in the decaying part"},
+        {"lifetime: 3, decay: 2.25", infinite, "1.5, 0.05", "follower lies in the decaying part"},
+        {"lifetime: 3, decay: 2.25", reactive, "1.5, 0", "follower lies in the decaying part"},
+        // an older part decays; the wake lies beside; the whole wake
+        {"lifetime: 2.5, decay: 0.5", finite, "1.3, 0", NULL},
+        {"lifetime: 3, decay: 2.25", finite, "1.5, 0.9", NULL},
+        {"lifetime: 8, decay: 2", finite, "1.5, 0", NULL},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct simulation *const simulation =
+            school_simulation_of(LEADER_AND_FOLLOWER, cases[i].wake, cases[i].fish, cases[i].place);
+        school_measure(simulation, 2.5);
+        expect_line(simulation, WARNING_WAKE, cases[i].part);
+    }
+}
+
+TEST(the_lost_velocity_is_that_of_the_lost_circulation) {
+    struct simulation *const simulation = school_simulation_of(LEADER_AND_FOLLOWER, "lifetime: 3, decay: 2.25",
+                                                               "pressure: {span: infinite}", "1.5, 0.05");
+    school_measure(simulation, 2.5);
+    double part[2];
+    flow_find_decayed(simulation->residual->flow, simulation->state, part);
+    NEAR(part[0], 0, 0, 0);
+
+    // every marker has half of both adjacent stretches, in place of the forms of old stretches; the sum at the nodes is
+    // not that at the control points: within a tenth
+    const struct school *const school = simulation->school;
+    const struct fish *const fish = &school->fish[1];
+    const struct wake *const wake = &simulation->state->wake[0];
+    const double *const y = simulation->state->y, e = fish->smoothing;
+    double lost_square = 0, square = 0;
+    for (int k = 0; k < fish->n_nodes; k++) {
+        double lost[2] = {0, 0}, whole[2] = {0, 0};
+        for (int i = 0; i < wake->n_vortex; i++) {
+            const double r[2] = {y[fish->at.x + k] - wake->x[i], y[fish->at.y + k] - wake->y[i]};
+            const double q = wake_circulation(wake, i) / (2 * M_PI * (r[0] * r[0] + r[1] * r[1] + e * e));
+            const double gone = 1 - wake_strength(school, simulation->state->t - wake->birth[i]);
+            for (int j = 0; j < 2; j++) {
+                whole[j] += q * r[j];
+                lost[j] += gone * q * r[j];
+            }
+        }
+        lost_square += lost[0] * lost[0] + lost[1] * lost[1];
+        square += whole[0] * whole[0] + whole[1] * whole[1];
+    }
+    NEAR(part[1], sqrt(lost_square / square), 0.1, 0);
+    assert_true(part[1] > 0.1);
 }
