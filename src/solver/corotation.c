@@ -1,4 +1,4 @@
-/* corotation.c: a rotation at each node, then one rotation in a plane for each of the three rigid motions. */
+/* corotation.c: a rotation at each node, followed by one rotation in a plane for each of the three rigid motions. */
 #include "solver/corotation.h"
 
 #include <math.h>
@@ -9,12 +9,12 @@
 // two translations and a rotation
 enum { N_RIGID = 3 };
 
-// in all arrays x is the first half and y the second half, as in the unknowns
+// in all arrays x comes first and then y, as in the unknowns
 struct body {
     const struct fish *fish;
     bool has_moved;        /* since corotation_set_reference */
-    int n_rigid;           /* number of mapped rigid motions: 0 with prescribed nodes */
-    double *reference;     /* positions of the nodes in the reference configuration, m      (2 n_nodes) */
+    int n_rigid;           /* number of rigid motions to map: 0 with prescribed nodes */
+    double *reference;     /* positions in the reference configuration, m      (2 n_nodes) */
     double *rotation;      /* cosine and sine of the rotation of each node since the reference  (2 n_nodes) */
     double *from[N_RIGID]; /* orthonormal rigid motions of the reference body, nodes rotated (2 n_nodes each) */
     double *to[N_RIGID];   /* orthonormal rigid motions of the current body                 (2 n_nodes each) */
@@ -70,7 +70,7 @@ static void rigid_motions(const struct fish *fish, const double *position, doubl
     }
 }
 
-// apply to a the rotation that maps the unit vector u to the unit vector v and keeps vectors perpendicular to both
+// rotate a by the rotation that takes the unit vector u to the unit vector v and leaves vectors perpendicular to both
 static void corotation_rotate(const struct fish *fish, const double *u, const double *v, double *a) {
     const double both = (corotation_dot(fish, u, a) + corotation_dot(fish, v, a)) / (1 + corotation_dot(fish, u, v)),
                  first = 2 * corotation_dot(fish, u, a);
@@ -108,8 +108,8 @@ static void body_set_current(struct body *body, const double *y) {
     const int n = fish->n_nodes;
     body->has_moved = true;
 
-    // the rotation of a node is the mean of the rotations of its two edges: the direction of the sum of their unit
-    // vectors
+    // The rotation of a node is the mean of the rotations of its two edges, that is the direction of the sum of their
+    // unit vectors.
     double before[2] = {0, 0};
     for (int k = 0; k < n; k++) {
         double after[2] = {0, 0}, mean[2];
@@ -126,7 +126,8 @@ static void body_set_current(struct body *body, const double *y) {
         before[1] = after[1];
     }
 
-    // the rigid motions of the reference body, rotated, and of the current body
+    // the rigid motions of the reference body, each rotated by P and by the maps of the earlier ones, and of the
+    // current body
     if (body->n_rigid == 0) return;
     rigid_motions(fish, body->reference, body->from);
     rigid_motions(fish, position, body->to);

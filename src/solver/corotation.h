@@ -1,18 +1,19 @@
-/* corotation.h: vector fields on the bodies (forces, velocities, accelerations of the nodes) mapped between a reference
- * configuration and the current one. doc/numerics.md, section 3. Tested by tests/solver/test_corotation.c.
+/* corotation.h: keeps an old Jacobian useful while the bodies move, by mapping vectors (forces, velocities,
+ * accelerations of the nodes) between the configuration at its evaluation and the current one. doc/numerics.md, section
+ * 3. Tested by tests/solver/test_corotation.c.
  *
- * An old Jacobian belongs to the reference configuration, the configuration of the bodies at the evaluation of the
- * Jacobian. Since then the bodies have turned and bent, but relative to the directions of the edges the Jacobian is
- * still valid: stretching is stiff along an edge in any orientation of the edge. Therefore map a residual to the
- * reference configuration, solve the system with the old matrix, and map the solution to the current configuration. The
- * map of one fish, from reference to current,
+ * An old Jacobian belongs to the reference configuration, that is to the bodies as they were when it was evaluated.
+ * Since then they have turned and bent, but seen from the edges the Jacobian is still right: stretching, for example,
+ * is stiff along an edge wherever the edge points. We therefore map a residual to the reference configuration, solve
+ * the system with the old matrix there, and map the solution to the current configuration. The map of one fish, from
+ * reference to current, is
  *
  *     T = H P:   P rotates the vector of each node by the mean rotation of its two edges,
- *                H is the smallest rotation that maps rigid motions of the reference body to those of the current body,
+ *                H is the smallest rotation that maps rigid motions of the reference body to those of the current body.
  *
- * is orthogonal in the inner product weighted with the masses of the nodes. Therefore the same T maps velocities and
- * forces per mass, and T preserves net force and moment: the elastic forces of the old matrix and their images have
- * zero net force and moment. For a fish with prescribed nodes, T = P: the rigid motion is prescribed. */
+ * T is orthogonal in the inner product that weights nodes with their masses. The same T therefore maps velocities and
+ * forces per mass, and it preserves net force and moment: the elastic forces of the old matrix have none, and neither
+ * have their images. If some nodes of a fish are prescribed, its rigid motion is known and T = P. */
 #ifndef COROTATION_H
 #define COROTATION_H
 

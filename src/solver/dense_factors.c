@@ -1,4 +1,5 @@
-/* dense_factors.c: elimination by panels of columns; tiles of the remaining matrix stay in registers. */
+/* dense_factors.c: Gaussian elimination by panels of columns. Tiles of the remaining matrix stay in registers while a
+ * panel is applied to them, which is where the speed comes from. */
 #include <math.h>
 #include <string.h>
 
@@ -19,7 +20,6 @@ struct dense_factors dense_factors_create(struct arena *arena, int n) {
 static WIDE(int, factor_panel, (const struct dense_factors *of, int first, int end), (of, first, end)) {
     const int n = of->n;
     for (int k = first; k < end; k++) {
-        // pivot: the largest entry
         double *const column = of->value + (long)k * of->stride;
         int pivot = k;
         for (int r = k + 1; r < n; r++) pivot = fabs(column[r]) > fabs(column[pivot]) ? r : pivot;
@@ -43,7 +43,7 @@ static WIDE(int, factor_panel, (const struct dense_factors *of, int first, int e
     return 1;
 }
 
-// apply the row swaps of a panel to another column; to the right of the panel also solve for the rows of the panel
+// Apply the row swaps of a panel to another column. To the right of the panel also solve for the rows of the panel.
 static WIDE(void, apply_panel, (const struct dense_factors *of, int first, int end, int j), (of, first, end, j)) {
     double *const restrict column = of->value + (long)j * of->stride;
     for (int k = first; k < end; k++) {
@@ -58,10 +58,10 @@ static WIDE(void, apply_panel, (const struct dense_factors *of, int first, int e
     }
 }
 
-/* Eight rows of a column; the compiler divides the vector into vectors of the instruction set. */
+/* Eight rows of a column; the compiler splits this type into vectors of the instruction set. */
 typedef double eight __attribute__((vector_size(8 * sizeof(double))));
 
-// subtract the products of the rows of the panel and of one tile of columns from eight rows below
+// subtract from eight rows below the panel the products of its rows with one tile of columns
 static inline __attribute__((always_inline)) void subtract_tile(const struct dense_factors *of, int first, int row,
                                                                 int column, const int n_columns) {
     const long stride = of->stride;
@@ -90,7 +90,7 @@ WIDE(int, dense_factors_set_up, (struct dense_factors * factors), (factors)) {
             if (j < first || j >= end) apply_panel(factors, first, end, j);
         }
 
-        // all rows and columns behind a panel of PANEL columns; the rows up to the stride are 0
+        // all rows and columns behind the panel, which has PANEL columns here; the rows up to the stride are 0
         for (int row = end; end < n && row < factors->stride; row += 8) {
             int column = end;
             for (; column + TILE_COLUMNS <= n; column += TILE_COLUMNS) {

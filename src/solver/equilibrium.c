@@ -1,4 +1,5 @@
-/* equilibrium.c: the residual of a run with constant velocities; unknowns are free positions and sheets. */
+/* equilibrium.c: Newton's method on the residual of a run, with constant velocities. The unknowns are the free
+ * positions and the sheets. */
 #include "solver/equilibrium.h"
 
 #include <lapacke.h>
@@ -11,14 +12,14 @@
 #include "school/residual.h"
 #include "solver/newton.h"
 
-/* Tolerance of the scaled residual. The scale of a force includes this fraction of the axial force by the rounding of
- * positions: some 1e-16 of a position over the length of an edge. */
+/* Tolerance of the scaled residual. Positions are rounded by some 1e-16 of their size, which stretches an edge and
+ * pulls at it; the scale of a force includes this fraction of the axial stiffness for it. */
 static const double tolerance = 1e-10, rounding = 1e-5;
 
-/* More than twice the number of iterations from a close initial guess. */
+/* A good initial guess takes fewer than half as many iterations. */
 enum { MAX_ITERATIONS = 16 };
 
-/* An eigenvalue is real if the imaginary part is below this fraction of the real part. */
+/* An eigenvalue counts as real if its imaginary part is below this fraction of its real part. */
 static const double nearly_real = 1e-3;
 
 const struct residual_mode equilibrium_mode = {.shed = SHED_IS_FAR};
@@ -28,9 +29,10 @@ struct equilibrium {
     struct residual *residual;
     struct state *state;
     struct jacobian *jacobian;
-    int n, n_places;                 /* unknowns: first the free positions of all bodies, then the sheets */
-    int *unknown, *row;              /* indices of unknown and equation in the school                        (n) */
-    int *number, *row_number;        /* inverse of unknown and row, or -1                               (n_unknowns) */
+    int n,
+        n_places; /* number of unknowns, first the free positions of all bodies, then the sheets; number of positions */
+    int *unknown, *row;              /* where unknown and equation stand in the school (n) */
+    int *number, *row_number;        /* the inverse of unknown and row; -1: not among them (n_unknowns) */
     double *scale, *row_scale, *one; /* (n) */
     double *u, *value;               /* scaled unknowns and residuals                       (n) */
     double *all;                     /* residual of the school                              (n_unknowns) */
@@ -59,7 +61,7 @@ struct equilibrium *equilibrium_create(struct arena *arena, const struct school 
     for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) NEW(arena, *reals[i], n);
     e->jacobian = jacobian_create(arena, school);
 
-    // couple all bodies at any distance
+    // at any distance, because the problem is small and has to be exact
     e->residual->couplings.reach = 1e6 * school->fish[0].length;
     residual_couple(&e->residual->couplings, state->y);
 
@@ -70,7 +72,7 @@ struct equilibrium *equilibrium_create(struct arena *arena, const struct school 
 
     // the free positions of all bodies
     for (int f = 0; f < school->n_fish; f++) {
-        // scale: the force that bends the body by its length, plus the force of the stream, plus rounding
+        // the scale of a force: what bends the body by its length, plus what the stream exerts, plus rounding
         const struct fish *const fish = &school->fish[f];
         const double speed = fish->length * fish_rate(school, fish);
         double stiffness = 0, axial = 0, depth = 0;
@@ -97,7 +99,7 @@ struct equilibrium *equilibrium_create(struct arena *arena, const struct school 
         const struct fish *const fish = &school->fish[f];
         const double speed = fish->length * fish_rate(school, fish), circulation = speed * fish->length;
         for (int j = 0; j < fish->n_sheet; j++) {
-            // the last is Kelvin's equation
+            // the last equation is Kelvin's
             equilibrium_list_one(e, fish->at.gamma + j, fish->at.gamma + j, speed,
                                  j < fish->n_control ? speed : circulation);
         }
@@ -151,7 +153,7 @@ enum status equilibrium_solve(struct equilibrium *e) {
     struct state *const state = e->state;
     const struct school *const school = e->residual->school;
 
-    // the known values: all nodes have the velocity of the first node, and no acceleration
+    // what is known: all nodes have the velocity of the first node and no acceleration
     memset(state->yp, 0, (size_t)school->n_unknowns * sizeof *state->yp);
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
@@ -199,7 +201,7 @@ enum status equilibrium_stiffness(struct equilibrium *e, struct equilibrium_stif
     NEW(scratch, pivot, n);
     TRY(equilibrium_jacobian_of(e, matrix));
 
-    // replace A by A - B D^-1 C in [A B; C D], A: block of the positions
+    // [A B; C D] is the stiffness, A its block of the positions: replace A by A - B D^-1 C
     double *const right = matrix + (size_t)n * (size_t)p, *const below = matrix + p;
     if (LAPACKE_dgesv(LAPACK_COL_MAJOR, m, p, right + p, n, pivot, below, n) != 0) {
         return status_fail(STATUS_SOLVER, "the positions of the bodies do not determine the sheets");

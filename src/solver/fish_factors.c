@@ -1,4 +1,5 @@
-/* fish_factors.c: KLU, elimination of the rod, and factors of the full Schur complement. */
+/* fish_factors.c: the rod is eliminated from the block of a fish by KLU, and the Schur complement of the sheet, which
+ * is full, is factorised densely. */
 #include "solver/fish_factors.h"
 
 #include <math.h>
@@ -8,11 +9,12 @@
 #include "base/wide.h"
 #include "solver/sparse_factors.h"
 
-/* If the elimination of the rod lets a column of S grow by more than 1/min_growth, KLU factorises the whole block. */
+/* If eliminating the rod makes a column of S grow by more than 1/min_growth, too many digits are lost, and KLU
+ * factorises the whole block. */
 static const double min_growth = SPARSE_MIN_GROWTH;
 
-/* Without momenta, sheets with at least this many points are treated as full. With fewer points KLU is nearly as fast.
- * Right-hand sides that KLU solves at once. */
+/* Without momenta, sheets with at least MIN_POINTS points are treated as full; with fewer, KLU is nearly as fast. KLU
+ * solves AT_ONCE right-hand sides at a time. */
 enum { MIN_POINTS = 100, AT_ONCE = 4 };
 
 struct fish_factors {
@@ -23,8 +25,8 @@ struct fish_factors {
     bool was_factorised;
     struct sparse_factors *whole;
 
-    /* in parts, if the block may be divided: the rows of A are the first rows of the block, the columns of A begin with
-     * column first; in_parts: at the last set-up */
+    /* What follows is used only if the block may be divided. The rows of A are the first rows of the block, and its
+     * columns begin with column first; in_parts: whether the last set-up divided the block. */
     bool may_divide, in_parts;
     struct sparse_factors *a;
     unsigned version; /* version of the divided pattern; 0: none */
@@ -33,7 +35,7 @@ struct fish_factors {
     struct sparse_columns rod;  /* A */
     struct dense_factors schur; /* S, later the factors of S                         (order n_sheet) */
     double *row_scale;          /* one over the largest entry of each row of the block         (n) */
-    int first_full, n_full;     /* the columns of A under which C is nearly full */
+    int first_full, n_full;     /* the columns of A below which C is nearly full */
     double *full;               /* -C of these columns                               (n_full, n_sheet) */
     double *x_rod, *x_sheet;    /* solutions                               (AT_ONCE, n_rod), (n_sheet) */
 };
@@ -44,7 +46,7 @@ struct fish_factors *fish_factors_create(struct arena *arena, const struct fish 
     factors->arena = arena;
     factors->fish = fish;
     factors->block = block;
-    // with momenta the law of motion is as full as the rows of the sheet, so the positions belong to the last columns
+    // with momenta the law of motion is as full as the rows of the sheet, so the positions count among the last columns
     const bool is_full = fish_has_momentum(fish);
     factors->first = is_full ? fish->at.vx - fish->at.x : 0;
     factors->n_rod = (is_full ? fish->at.ax : fish->at.gamma) - fish->at.x;
@@ -73,7 +75,7 @@ void fish_factors_prepare(struct fish_factors *factors) {
     struct sparse_columns *const rod = &factors->rod;
     if (!factors->may_divide || factors->version == block->version) return;
 
-    // the parts in the columns of the block
+    // where the rows of the sheet begin in each column
     for (int c = 0; c < block->n; c++) {
         int64_t i = block->column_start[c];
         while (i < block->column_start[c + 1] && block->row_index[i] < factors->n_rod) i++;
@@ -92,7 +94,7 @@ void fish_factors_prepare(struct fish_factors *factors) {
         memcpy(rod->row + rod->start[c], from, (size_t)(rod->start[c + 1] - rod->start[c]) * sizeof *from);
     }
 
-    // the longest run of columns with at least half of the rows of C
+    // the longest run of columns in which C has at least half of its rows
     int run = 0;
     factors->n_full = 0;
     for (int c = 0; c < factors->n_rod; c++) {
@@ -107,7 +109,7 @@ void fish_factors_prepare(struct fish_factors *factors) {
     rod->version = factors->version = block->version;
 }
 
-// y -= A x for the rows of a column: one by one up to the last gap between the rows, then together
+// y -= A x for one column. Rows up to the last gap are done one by one; the rest are neighbours and vectorise.
 static inline __attribute__((always_inline)) void subtract_column(const struct sparse *block, int64_t start,
                                                                   int64_t end, int64_t first_row, double x,
                                                                   double *restrict y) {
@@ -122,7 +124,7 @@ static inline __attribute__((always_inline)) void subtract_column(const struct s
     for (int64_t i = 0; i < end - start; i++) to[i] -= value[i] * x;
 }
 
-// subtract C x from the rows of the sheet, except n_left columns from first_left on; x: unknowns of the rod
+// subtract C x from the rows of the sheet, leaving out n_left columns from first_left on; x: unknowns of the rod
 static WIDE(void, subtract_rod,
             (const struct fish_factors *factors, const double *x, int first_left, int n_left, double *rows),
             (factors, x, first_left, n_left, rows)) {
@@ -144,8 +146,8 @@ static WIDE(void, subtract_sheet, (const struct fish_factors *factors, const dou
     }
 }
 
-// n columns of S from column first on, n <= AT_ONCE; returns the smallest ratio of the largest entries of a column of
-// the block and of S, in units of the rows
+// Find n columns of S from column first on, n <= AT_ONCE. Returns how much the elimination lets them grow: the smallest
+// ratio of the largest entry of a column before and after, in units of the rows.
 static double fill_columns(struct fish_factors *factors, int first, int n) {
     const struct sparse *const block = factors->block;
     double before[AT_ONCE] = {0}, least = 1;
@@ -181,13 +183,13 @@ static double fill_columns(struct fish_factors *factors, int first, int n) {
     return least;
 }
 
-// set up the factors in parts; STATUS_RETRY: A is singular or nearly singular
+// set up the factors in parts; STATUS_RETRY if A is singular or nearly so
 static enum status factors_set_up_parts(struct fish_factors *factors) {
     const struct sparse *const block = factors->block;
     const struct sparse_columns *const rod = &factors->rod;
     const int n = factors->n_sheet;
 
-    // the values of A, the scale of each row, and -C where it is nearly full
+    // take the values of A, the scale of each row, and -C where C is nearly full
     for (int c = 0; c < factors->n_rod; c++) {
         const double *const from = block->value + block->column_start[factors->first + c];
         memcpy(rod->value + rod->start[c], from, (size_t)(rod->start[c + 1] - rod->start[c]) * sizeof *from);
@@ -220,7 +222,7 @@ void fish_factors_set_up(struct fish_factors *factors) {
     enum status status = factors->may_divide ? factors_set_up_parts(factors) : STATUS_RETRY;
     factors->in_parts = status == STATUS_OK;
 
-    // factorise the whole block; later values may be divided again, with new pivots
+    // factorise the whole block instead; later values may be divided again, with new pivots
     if (status == STATUS_RETRY && !(factors->may_divide && sparse_factors_lack_memory(factors->a))) {
         const struct sparse_columns whole = {block->n, block->version, block->column_start, block->row_index,
                                              block->value};

@@ -1,4 +1,5 @@
-/* ida.c: IDA applied to the residual of the school. */
+/* ida.c: the default integrator, IDA of SUNDIALS applied to the residual of the school. Most of the file is about
+ * spending few Jacobians: when to keep one, how long the steps are, and what Newton's iteration has to achieve. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -10,30 +11,31 @@
 #include "solver/linear.h"
 #include "solver/sundials.h"
 
-/* Tolerance of Newton's iteration as a fraction of the tolerance of the error test. Velocities are outside the error
- * test: IDA's default of 0.33 would leave noise in the accelerations of stiff bodies. Measured: doc/numerics.md. */
+/* Newton's iteration has to reach this fraction of the tolerance of the error test. Velocities are outside the error
+ * test, so IDA's default of 0.33 would leave noise in the accelerations of stiff bodies. Measured: doc/numerics.md. */
 static const double newton_coefficient = 0.003;
 
-/* Keep a Jacobian while its leading coefficient is within this fraction of the leading coefficient of the step (IDA's
- * default is 0.25), and while the Jacobian saves more iterations than an evaluation costs. Measured: doc/numerics.md.
- * */
+/* Keep a Jacobian while its leading coefficient is within this fraction of that of the step (IDA's default is 0.25),
+ * and while it saves more iterations than its evaluation costs. Measured: doc/numerics.md. */
 static const double cj_change = 0.1;
 static const int jacobian_cost = 5, max_iterations = 6, max_with_new = 20;
 
-/* Tolerances of the linear solver, as fractions of the right-hand side and of the tolerance of Newton's iteration:
- * smaller tolerances save no iteration. Measured: doc/numerics.md. */
+/* Tolerances of the linear solver, as fractions of the right-hand side and of the tolerance of Newton's iteration.
+ * Smaller ones save no iteration. Measured: doc/numerics.md. */
 static const double linear_relative = 1e-4, linear_absolute = 0.1;
 
-/* Keep a step size that IDA would change by a factor between these bounds, because a changed step costs a Jacobian. IDA
- * cuts every step that its estimate asks to reduce, however little, and then doubles it. Measured: doc/numerics.md. */
+/* Keep the step size if IDA would change it by a factor between these bounds, because a changed step costs a Jacobian.
+ * IDA by itself cuts every step that its estimate asks to reduce, however little, and then doubles it again. Measured:
+ * doc/numerics.md. */
 static const double kept_from = 0.85, kept_to = 1.9;
 
-/* At the start and after a restart the order is one. The first step is this fraction of the last step; at the start, of
- * the interval, and at most this factor times the root of rtol, which the error of order one requires. IDA's own first
- * step ignores the stiffness of the body, and is so small that 15 Jacobians follow. */
+/* At the start and after a restart the order is one, which requires a small first step. After a restart it is
+ * first_step times the last step. At the start it is first_step times the interval, and at most first_by_root times the
+ * interval times the root of rtol, because of the error at order one. IDA's own first step ignores the stiffness of the
+ * body, and is so small that 15 Jacobians follow. */
 static const double first_step = 0.3, first_by_root = 20;
 
-/* At least the number of vectors that IDA clones. */
+/* IDA clones at most this many vectors. */
 enum { N_CLONES = 32 };
 
 struct ida {
@@ -103,7 +105,8 @@ static double leading_coefficient(void *data) {
     return value;
 }
 
-// the newest stretch of a free sheet grows from zero length at the tail in every interval
+// The newest stretch of a free sheet grows from zero length at the tail in every interval. The derivatives by its
+// circulation therefore change faster than all others, and are updated without a new Jacobian.
 static void update_jacobian(void *data) {
     struct ida *const solver = data;
     double *const by_shed = N_VGetArrayPointer(solver->scratch[1]);
@@ -113,13 +116,13 @@ static void update_jacobian(void *data) {
     linear_update_shed(solver->linear.linear, by_shed);
 }
 
-// add coupling blocks of fish at larger distances
 static int couple_more(void *data) {
     struct ida *const solver = data;
     return residual_couple_more(&solver->residual->couplings, solver->state->y);
 }
 
-// write the last attempt: Newton's iteration failed, or the step was accepted, or else failed the error test
+// Write the last attempt with its outcome: Newton's iteration failed, or the step was accepted, or else it failed the
+// error test.
 static void ida_trace_result(struct ida *solver, bool is_accepted) {
     if (!solver->is_pending) return;
     const int code = solver->newton_code;
@@ -131,7 +134,7 @@ static void ida_trace_result(struct ida *solver, bool is_accepted) {
     solver->is_pending = false;
 }
 
-// only while a trace is open; another attempt before this one means that IDA has rejected that one
+// Asked only while a trace is open. If an attempt is still pending here, IDA has rejected it, because it makes another.
 static struct trace_attempt *next_attempt(void *data) {
     struct ida *const solver = data;
     if (!solver->trace) return NULL;
@@ -178,7 +181,6 @@ static enum status ida_create(struct arena *arena, void **created, struct residu
     solver->jacobians = options->before.jacobian_evaluations;
     memcpy(solver->steps_of_order, options->before.steps_of_order, sizeof solver->steps_of_order);
 
-    // tolerances and kinds of the unknowns
     NEW(arena, solver->tolerance, n);
     NEW(arena, solver->weight, n);
     NEW(arena, solver->kind, n);
@@ -193,7 +195,6 @@ static enum status ida_create(struct arena *arena, void **created, struct residu
     solver->algebraic_rates = integrator_rates_create(arena, school);
     integrator_rates_begin(solver->algebraic_rates, state);
 
-    // vectors and solvers of SUNDIALS
     sundials_context_create(&solver->context, arena, n, school->threads, &solver->failure);
     solver->y = sundials_context_vector(&solver->context, state->y);
     solver->yp = sundials_context_vector(&solver->context, state->yp);
@@ -281,7 +282,7 @@ static const struct {
 
 enum { ERROR_LENGTH = 256 };
 
-// the unknown with the largest estimated error, in units of its tolerance; empty for an error without an estimate
+// The unknown with the largest estimated error, in units of its tolerance, in words. Empty if there is no estimate.
 static void ida_largest_error(const struct ida *solver, char error[ERROR_LENGTH]) {
     const struct school *const school = solver->residual->school;
     *error = '\0';
@@ -319,7 +320,8 @@ static enum status ida_failed(const struct ida *solver, int code) {
 
     ida_largest_error(solver, error);
 
-    // an edge that forces have compressed to almost zero length: the elastic force of a rod is finite at length zero
+    // An edge that forces have compressed to almost zero length is a likely cause: the elastic force of a rod is finite
+    // at length zero, so nothing holds such an edge open.
     for (int f = 0; f < school->n_fish && !*seen; f++) {
         double ratio;
         const int edge = rod_shortest_edge(&school->fish[f], y, &ratio);
@@ -330,7 +332,7 @@ static enum status ida_failed(const struct ida *solver, int code) {
                  edge, school->fish[f].name, ratio);
     }
 
-    // pairs of fish without coupling blocks in the Jacobian
+    // another likely cause: pairs of fish without coupling blocks in the Jacobian
     const int n_pairs = school->n_fish * (school->n_fish - 1) / 2;
     const int n_uncoupled = n_pairs - solver->jacobian->n_couplings / 2;
     if (code == IDA_CONV_FAIL && !*seen && n_uncoupled > 0) {
@@ -369,9 +371,9 @@ static enum status ida_step(void *data, double t, double *reached) {
     double step = 0;
     long total = 0;
 
-    // The latest end of the step: equal parts of the rest of the interval. Steps then keep their size from event to
-    // event, and so does the Jacobian. Before the first step there is no step size; rounding is smaller than the
-    // difference from the end that IDA ignores.
+    // Choose the latest end of the step so that the rest of the interval is divided into equal parts. Steps then keep
+    // their size from event to event, and so does the Jacobian. Before the first step there is no step size. The margin
+    // for rounding is smaller than the distance from the stop time that IDA ignores.
     IDAGetNumSteps(solver->ida, &total);
     IDAGetCurrentStep(solver->ida, &step);
     const double left = t - solver->reached, rounding = 1e-14 * t;

@@ -1,23 +1,23 @@
-/* ida_newton.c: the iteration, its convergence test, and the decision to re-evaluate the Jacobian. */
+/* ida_newton.c: the iteration with its start, its test of convergence, and the decision when a new Jacobian pays. */
 #include "solver/ida_newton.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
-/* The norms of a correction: of all unknowns, and of the differential unknowns only. In the former the algebraic
- * unknowns hide slow convergence of the positions: with a free sheet the first correction of the circulation is a
- * hundred times larger, and vanishes with the second correction. */
+/* A correction is judged by two norms, over all unknowns and over the differential ones only. In the first norm the
+ * algebraic unknowns would hide that positions converge slowly: with a free sheet the first correction of the
+ * circulation is a hundred times larger than the others, and the second removes it. */
 enum { ALL, DIFFERENTIAL, N_NORMS };
 
-/* Most solutions between two total corrections that are alike, and number of total corrections: two alike for each. */
+/* Total corrections of steps up to MOST_LAG apart may be alike. To find the lag, two periods are kept. */
 enum { MOST_LAG = 4, N_PAST = 2 * MOST_LAG };
 
 struct ida_newton {
     struct ida_newton_rules rules;
     struct corotation *corotation;
     N_Vector correction;
-    N_Vector past[N_PAST]; /* total corrections of the last solutions with this coefficient, the newest first */
+    N_Vector past[N_PAST]; /* total corrections of the last solutions with this leading coefficient, newest first */
     int n_past;
     double coefficient; /* leading coefficient of the last solution */
 
@@ -26,7 +26,7 @@ struct ida_newton {
     SUNNonlinSolLSetupFn set_up;
     SUNNonlinSolLSolveFn solve;
 
-    /* of this solution */
+    /* during this solution */
     long iterations, failures;
     int done, most;        /* iterations with the present Jacobian, and their maximum */
     double first[N_NORMS]; /* size of the first correction */
@@ -37,16 +37,16 @@ struct ida_newton {
     struct trace_attempt *attempt; /* corrections of this solution; NULL: not recorded */
 };
 
-// judge a correction by one norm: converged, continue, or failed
+// judge a correction by one norm: has the iteration converged, should it continue, or has it failed?
 static int newton_test(struct ida_newton *newton, int norm, double size, double tolerance) {
     if (!isfinite(size)) return SUN_NLS_CONV_RECVR;
     if (newton->done == 1) {
         newton->first[norm] = size;
-        // mere rounding
+        // one correction tells nothing about the rate, so accept it only if it is mere rounding
         return size <= 1e-4 * tolerance ? SUN_SUCCESS : SUN_NLS_CONTINUE;
     }
     const double rate = size > 0 ? pow(size / newton->first[norm], 1.0 / (newton->done - 1)) : 0;
-    // corrections at the noise level of the linear solver no longer shrink: accept small corrections
+    // At the noise level of the linear solver corrections no longer shrink; small ones are accepted there.
     const double remaining = rate < 0.9 ? rate / (1 - rate) : 10;
     if (size * remaining <= tolerance) return SUN_SUCCESS;
     // with an old Jacobian the first two corrections may grow
@@ -54,7 +54,7 @@ static int newton_test(struct ida_newton *newton, int norm, double size, double 
     return newton->done < newton->most ? SUN_NLS_CONTINUE : SUN_NLS_CONV_RECVR;
 }
 
-// keep a correction for the trace: its norms, and the unknown with the largest correction
+// keep a correction for the trace: its norms, and the unknown that it changes most
 static void newton_record(struct ida_newton *newton, double all, double differential, const double *correction,
                           const double *weight) {
     struct trace_attempt *const attempt = newton->attempt;
@@ -71,7 +71,7 @@ static void newton_record(struct ida_newton *newton, double all, double differen
     attempt->correction[i] = (struct trace_correction){all, differential, rate, newton->done == 1};
 }
 
-// iterate with the present Jacobian; newton->correction holds the residual
+// iterate with the present Jacobian; newton->correction holds the residual when the iteration starts
 static int newton_iterate(struct ida_newton *newton, N_Vector total, N_Vector weights, double tolerance, void *ida) {
     double *const correction = N_VGetArrayPointer(newton->correction);
     const double *const weight = N_VGetArrayPointer(weights);
@@ -82,7 +82,7 @@ static int newton_iterate(struct ida_newton *newton, N_Vector total, N_Vector we
         newton->iterations++;
         newton->done++;
 
-        // correct
+        // solve in the configuration in which the Jacobian was evaluated, then map the correction back
         N_VScale(-1, newton->correction, newton->correction);
         corotation_map(newton->corotation, true, correction);
         int code = newton->solve(newton->correction, ida);
@@ -90,7 +90,8 @@ static int newton_iterate(struct ida_newton *newton, N_Vector total, N_Vector we
         corotation_map(newton->corotation, false, correction);
         N_VLinearSum(1, total, 1, newton->correction, total);
 
-        // both norms of the correction, weighted root mean squares; each sum in the order of the unknowns
+        // Both norms are weighted root mean squares. Each sum is taken in the order of the unknowns, so that bits do
+        // not depend on threads.
         double all = 0, differential = 0;
         for (sunindextype i = 0; i < n; i++) {
             const double weighted = correction[i] * weight[i], square = weighted * weighted;
@@ -103,7 +104,7 @@ static int newton_iterate(struct ida_newton *newton, N_Vector total, N_Vector we
                           weight);
         }
 
-        // positions may converge later than the other unknowns
+        // the positions may converge later than the other unknowns
         code = newton_test(newton, ALL, sqrt(all / (double)n), tolerance);
         if (code == SUN_NLS_CONV_RECVR) return code;
         if (kind && newton_test(newton, DIFFERENTIAL, sqrt(differential / (double)n), tolerance) != SUN_SUCCESS) {
@@ -115,9 +116,10 @@ static int newton_iterate(struct ida_newton *newton, N_Vector total, N_Vector we
     }
 }
 
-/* The start is the last total correction. With a period, for example of two steps, it is the total correction of one
- * period before, plus the change from the period before: doc/numerics.md. The period is the lag with the least
- * difference. */
+/* Guess the total correction of this step. Events repeat, so corrections recur with a period of one step or a few; the
+ * period is the lag at which the last correction resembles an earlier one most. The guess is the total correction one
+ * period ago plus its change over the period before; without a period it is the last correction. doc/numerics.md,
+ * section 3. */
 static void newton_start(const struct ida_newton *newton, N_Vector weights, N_Vector total) {
     if (newton->n_past == 0) {
         N_VConst(0, total);
@@ -154,13 +156,14 @@ static int newton_solve_step(SUNNonlinearSolver solver, N_Vector predicted, N_Ve
     struct ida_newton *const newton = solver->content;
     const struct ida_newton_rules *const rules = &newton->rules;
     newton->iterations = newton->failures = 0;
-    // stale: the last solution cost as much as the mean solution with this Jacobian, including the cost of the Jacobian
+    // The Jacobian is stale if the last solution took as many iterations as the average solution with this Jacobian, in
+    // which its own cost is included.
     const bool is_stale = newton->n_last * newton->n_solutions >= newton->n_iterations + rules->jacobian_cost;
     if (newton->is_incomplete || is_stale) evaluate = SUNTRUE;
     newton->is_incomplete = false;
     if (!evaluate) corotation_set_current(newton->corotation, N_VGetArrayPointer(predicted));
 
-    // total corrections of another step size are not alike
+    // with another step size, total corrections are not alike
     const double coefficient = rules->leading_coefficient(rules->data);
     if (!(fabs(coefficient - newton->coefficient) <= 1e-9 * coefficient)) newton->n_past = 0;
     newton->coefficient = coefficient;
@@ -197,7 +200,6 @@ static int newton_solve_step(SUNNonlinearSolver solver, N_Vector predicted, N_Ve
         newton->failures++;
         if (code < 0) return code;
         if (evaluate && !(rules->complete && rules->complete(rules->data))) return code;
-        // try again with a new Jacobian
         evaluate = SUNTRUE;
         N_VConst(0, total);
     }
@@ -214,7 +216,7 @@ static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector 
     return code;
 }
 
-// restart of IDA: discard the history
+// IDA has restarted, so the history is worthless
 static int newton_initialize(SUNNonlinearSolver solver) {
     struct ida_newton *const newton = solver->content;
     newton->coefficient = 0;

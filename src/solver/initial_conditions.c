@@ -1,5 +1,6 @@
-/* initial_conditions.c: KINSOL's Newton method for the algebraic equations. The equation of a differential unknown is
- * "no change", so the Jacobian of the school serves, with the rows of differential unknowns masked. */
+/* initial_conditions.c: KINSOL's Newton method for the algebraic equations. The equation of a differential unknown
+ * becomes "no change", so that the Jacobian of the school serves here too, with the rows of differential unknowns
+ * masked. */
 #include "solver/initial_conditions.h"
 
 #include <math.h>
@@ -12,19 +13,20 @@
 #include "solver/linear.h"
 #include "solver/sundials.h"
 
-/* Norm of the scaled residual at which Newton's method has converged; it also converges when steps no longer change the
+/* Newton's method has converged when the norm of the scaled residual is below this, or when steps no longer change the
  * unknowns. */
 static const double tolerance = 1e-14;
 
-/* With many close bodies, rounding in the sums of a row can keep the norm above the tolerance and the steps constant:
- * accept this norm after the last iteration. */
+/* With many close bodies, rounding in the long sums of a row can keep the norm above the tolerance while the steps no
+ * longer change: after the last iteration this norm is accepted. */
 static const double rounded = 1e-12;
 
-/* With momenta an acceleration appears only in its own linear equation, and velocities are algebraic: their
- * rounding errors in stiff forces must not prevent convergence. Factor on the scale of accelerations. */
+/* With momenta, an acceleration appears only in its own linear equation, and velocities are algebraic. Their rounding
+ * errors, multiplied by stiff forces, must not prevent convergence, so the scale of accelerations is larger by this
+ * factor. */
 static const double loose = 1e6;
 
-/* Small, so that each step of Newton's method gains as many digits as with an exact solution. */
+/* So small that each step of Newton's method gains as many digits as with an exact solution. */
 static const struct linear_tolerance linear_tolerance = {.relative = 1e-10};
 
 struct initial_conditions {
@@ -33,7 +35,8 @@ struct initial_conditions {
     int n;
     const struct residual_mode *mode;
     double t;
-    /* unknowns, rates of zero, kinds, scales of the unknowns and of the equations in their rows, and inverses  (n) */
+    /* unknowns, rates of zero, kinds, scales of the unknowns and of the equations in their rows, and their inverses
+     * (n) */
     double *y, *zero, *kind, *scale, *inverse_scale;
     double *value;       /* residual of the last evaluation                                             (n) */
     double *start;       /* initial guess and solution of KINSOL                                        (n) */
@@ -46,14 +49,13 @@ struct initial_conditions {
     long iterations;
 };
 
-// copy the algebraic unknowns only: the differential unknowns keep their bits
+// copy only the algebraic unknowns, so that the differential ones keep their bits
 static void take_algebraic(const struct initial_conditions *c, const double *from, double *y) {
     for (int i = 0; i < c->n; i++) {
         if (c->kind[i] <= 0) y[i] = from[i];
     }
 }
 
-// the residual of the algebraic equations
 static int algebraic_value(N_Vector solution, N_Vector value, void *data) {
     struct initial_conditions *const c = data;
     double *const to = N_VGetArrayPointer(value);
@@ -83,7 +85,7 @@ enum status initial_conditions_create(struct arena *arena, struct initial_condit
     double **const arrays[] = {&c->y, &c->zero, &c->kind, &c->scale, &c->value, &c->inverse_scale, &c->start};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) NEW(arena, *arrays[i], n);
     for (int i = 0; i < n; i++) {
-        // with momenta no other equation depends on an acceleration
+        // with momenta no other equation depends on the acceleration of a node
         const struct unknown_place place = residual_place(residual->school, i);
         const bool is_acceleration = place.kind == UNKNOWN_AX || place.kind == UNKNOWN_AY;
         const bool is_loose = is_acceleration && fish_has_momentum(&residual->school->fish[place.fish]);
@@ -99,7 +101,7 @@ enum status initial_conditions_create(struct arena *arena, struct initial_condit
     c->linear = linear_sundials_create(&c->context, c->jacobian, c->scale, linear_tolerance);
     sundials_context_reserve(&c->context, 12);  // KINSOL clones 5
     c->kinsol = sundials_context_own(&c->context, OWNED_KINSOL, KINCreate(c->context.context));
-    // full Newton steps, because the equations are nearly linear, with a new Jacobian in each step
+    // full Newton steps, because the equations are nearly linear, and a new Jacobian for each
     if (KINSetErrHandlerFn(c->kinsol, sundials_context_message, &c->failure) || KINSetUserData(c->kinsol, c) ||
         KINInit(c->kinsol, algebraic_value, c->solution) ||
         KINSetLinearSolver(c->kinsol, c->linear.solver, c->linear.matrix) ||
@@ -112,7 +114,7 @@ enum status initial_conditions_create(struct arena *arena, struct initial_condit
     return STATUS_OK;
 }
 
-// the largest scaled residual of the last evaluation, and its row
+// the largest scaled residual of the last evaluation, and the row where it is
 static double largest_residual(const struct initial_conditions *c, int *worst) {
     double max = -1;
     for (int i = 0; i < c->n; i++) {
@@ -125,7 +127,7 @@ static double largest_residual(const struct initial_conditions *c, int *worst) {
     return max;
 }
 
-// a message that names the equation with the largest residual
+// fail with a message that names the equation with the largest residual
 static enum status initial_failed(struct initial_conditions *c, int code) {
     int worst = 0;
     const double max = largest_residual(c, &worst);
@@ -159,7 +161,7 @@ enum status initial_conditions_solve(struct initial_conditions *c, const struct 
     memcpy(c->y, y, (size_t)c->n * sizeof *y);
     memcpy(c->start, y, (size_t)c->n * sizeof *y);
 
-    // kinds of unknowns may have changed since the last solution: mask the rows of the differential unknowns
+    // Another mode may have other differential unknowns than the last solution had: mask their rows.
     const struct school *const school = c->residual->school;
     residual_kinds(c->residual, c->mode, c->value);
     if (memcmp(c->value, c->kind, (size_t)c->n * sizeof *c->kind) != 0) {

@@ -1,5 +1,6 @@
-/* initial_conditions.h: consistent initial conditions: KINSOL solves the algebraic equations for the algebraic
- * unknowns, given the differential ones. doc/model.md, section 10. Tested by tests/solver/test_initial_conditions.c. */
+/* initial_conditions.h: makes the unknowns consistent, at the start and after every jump. The differential unknowns are
+ * given, and KINSOL solves the algebraic equations for the algebraic ones. doc/model.md, section 10. Tested by
+ * tests/solver/test_initial_conditions.c. */
 #ifndef INITIAL_CONDITIONS_H
 #define INITIAL_CONDITIONS_H
 
@@ -13,8 +14,8 @@ enum status initial_conditions_create(struct arena *arena, struct initial_condit
                                       struct residual *residual);
 
 /* Solve for the algebraic unknowns of y at time t [s], and set the rates yp of the differential unknowns; both arrays
- * are (n_unknowns). The mode defines the kinds of the unknowns. Fails with STATUS_SOLVER, or with STATUS_STOPPED once
- * *residual->stop is not 0: y and yp are unchanged. */
+ * are (n_unknowns). The mode decides which unknowns are differential. Fails with STATUS_SOLVER, or with STATUS_STOPPED
+ * once *residual->stop is not 0; y and yp are then unchanged. */
 enum status initial_conditions_solve(struct initial_conditions *solver, const struct residual_mode *mode, double t,
                                      double *y, double *yp);
 

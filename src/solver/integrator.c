@@ -1,5 +1,5 @@
-/* integrator.c: the loop over the steps; totals of the linear solver; rates of the bound strengths by divided
- * differences of the last three steps. */
+/* integrator.c: the loop over the steps of one interval, the totals of the linear solver, and the rates of the bound
+ * strengths, which are divided differences over the last three steps. */
 #include "solver/integrator.h"
 
 #include <string.h>
@@ -17,7 +17,7 @@ enum status integrator_limited(const struct integrator_options *options, double 
 enum status integrator_advance(const struct integrator *integrator, void *solver,
                                const struct integrator_options *options, double start, double t,
                                const struct integrator_watch *watch) {
-    // a method of fixed step needs no attempt to find that the steps are too many
+    // with a fixed step the number of steps is known, so fail before the first one
     double reached = start;
     if (options->step > 0 && (t - start) / options->step > options->max_steps + 0.5) {
         return integrator_limited(options, start, "");
@@ -41,7 +41,7 @@ void integrator_count_linear(struct integrator_counts *counts, const struct inte
     counts->klu_refactorisations = before->klu_refactorisations + linear->klu.refactorisations;
     counts->gmres_iterations = before->gmres_iterations + linear->iterations;
 
-    // a solver without a factorisation has no size yet
+    // a solver that has not factorised yet has no sizes of its own
     const bool is_set_up = linear->factor_non_zeros > 0;
     counts->jacobian_non_zeros = is_set_up ? linear->jacobian_non_zeros : before->jacobian_non_zeros;
     counts->factor_non_zeros = is_set_up ? linear->factor_non_zeros : before->factor_non_zeros;
@@ -85,7 +85,6 @@ void integrator_rates_step(struct integrator_rates *rates, double t, struct stat
         }
     }
 
-    // keep the step
     double *const oldest = rates->y[N_KEPT - 1];
     memcpy(oldest, state->y, (size_t)rates->school->n_unknowns * sizeof *oldest);
     rates->y[1] = rates->y[0];

@@ -1,4 +1,4 @@
-/* linear.c: factors for the diagonal blocks and GMRES of SUNDIALS for the couplings, or factors of the whole matrix. */
+/* linear.c: factors of the diagonal blocks with GMRES for the couplings, or factors of the whole matrix. */
 #include "solver/linear.h"
 
 #include <math.h>
@@ -10,24 +10,25 @@
 #include "solver/fish_factors.h"
 #include "solver/sundials.h"
 
-/* Relative tolerance of GMRES during contact: the forces between two bodies cancel only to the accuracy of the
- * solution, and the remainder changes the total momentum. */
+/* During contact GMRES has to be more accurate: the forces between two bodies cancel only to the accuracy of the
+ * solution, and what remains changes the total momentum. */
 static const double contact_relative = 1e-9;
 
-/* Maximum number of iterations of GMRES; Newton's iteration judges the solution after the last iteration. */
+/* GMRES takes at most this many iterations; Newton's iteration then judges what it has reached. */
 enum { MAX_ITERATIONS = 40 };
 
 /* The diagonal block of one fish. */
 struct block {
     struct fish_factors *factors;
-    /* change of the column of the shed circulation since the last set-up: z = D^-1 change, over 1 plus the element of z
-     * for that circulation                                                            (unknowns of the fish) */
+    /* the effect of changing the column of the shed circulation since the last set-up: z = D^-1 change, divided by one
+     * plus the element of z for that circulation                                                  (unknowns of the
+     * fish) */
     int is_updated;
     double *update;
 };
 
-/* The Jacobian as one sparse matrix, which KLU factorises, and the updated columns of the circulations shed. With the
- * changes C of these columns and their unit vectors E (Woodbury),
+/* The Jacobian as one sparse matrix, which KLU factorises, together with the changed columns of the shed circulations.
+ * If C are the changes of these columns and E the unit vectors that select them (Woodbury),
  *
  *     (J + C E^T)^-1 b = x - Z K^-1 E^T x,   J x = b,   J Z = C,   K = 1 + E^T Z     of order n_fish */
 struct whole {
@@ -95,7 +96,8 @@ struct linear *linear_create(struct arena *arena, const struct jacobian *jacobia
 
 // ---- the whole matrix
 
-/* Call put for each entry of the Jacobian, in ascending rows of a column, except zeros in masked rows of couplings. */
+/* Call put for every entry of the Jacobian, in ascending rows of a column. Entries of couplings in masked rows are zero
+ * and are left out. */
 static void whole_each(struct whole *whole, const struct jacobian *jacobian,
                        void (*put)(struct whole *whole, int64_t column, int64_t row, double value)) {
     const struct school *const school = jacobian->school;
@@ -138,7 +140,7 @@ static enum status whole_setup(struct linear *linear) {
     struct sparse_columns *const columns = &whole->columns;
     whole->is_updated = false;
 
-    // count the entries of each column if a block or the couplings have another pattern
+    // count the entries of each column again if the pattern of a block or the couplings have changed
     bool is_new = columns->version == 0 || whole->couplings != jacobian->pattern;
     for (int f = 0; f < school->n_fish; f++) is_new |= whole->version[f] != jacobian->own[f]->version;
     if (is_new) {
@@ -182,7 +184,7 @@ enum status linear_setup(struct linear *linear) {
     const struct school *school = jacobian->school;
     const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_MATRICES);
     for (int f = 0; f < school->n_fish; f++) {
-        // a new pattern requests memory, which no parallel region may
+        // a new pattern needs memory, which must not be requested inside a parallel region
         fish_factors_prepare(linear->block[f].factors);
         linear->block[f].is_updated = 0;
     }
@@ -212,7 +214,7 @@ static void solve_block(const struct linear *linear, int f, double *x) {
     for (int i = 0; i < n; i++) x[i] -= shed * block->update[i];
 }
 
-/* A product or solution, fish by fish. */
+/* The operands of a product or a solution that runs fish by fish. */
 struct operation {
     struct linear *linear;
     const double *from;
@@ -230,7 +232,8 @@ static void for_each_fish(void (*of_fish)(const struct operation *of, int f), st
     }
 }
 
-// the change of the column of the shed circulation of fish f, in rows of its block; derivative: new ones (n_unknowns)
+// how the column of the circulation shed by fish f changes, in the rows of its block; derivative: the new ones
+// (n_unknowns)
 static void find_change(const struct jacobian *jacobian, int f, const double *derivative, double *change) {
     const struct fish *fish = &jacobian->school->fish[f];
     const struct sparse *const own = jacobian->own[f];
@@ -295,7 +298,7 @@ static void uncoupled_solve(const struct operation *of, int f) {
     solve_block(of->linear, f, of->to + at->x);
 }
 
-// product = v + D^-1 C v, C: coupling blocks
+// product = v + D^-1 C v, where C are the coupling blocks
 static void coupled_multiply(const struct operation *of, int f) {
     const struct jacobian *jacobian = of->linear->jacobian;
     const struct layout *at = &jacobian->school->fish[f].at;
@@ -360,7 +363,7 @@ enum status linear_solve(struct linear *linear, const double *b, double *x) {
         for_each_fish(uncoupled_solve, (struct operation){linear, b, x});
     }
 
-    // the coupled system; x is now the solution of the uncoupled system
+    // x is now the solution without couplings, from which GMRES starts
     if (!linear->whole && jacobian->n_couplings > 0) {
         if (!linear->gmres) gmres_create(linear);
         N_VSetArrayPointer(x, linear->x);
@@ -374,7 +377,7 @@ enum status linear_solve(struct linear *linear, const double *b, double *x) {
             SUNLinSolSetZeroGuess(linear->gmres, SUNTRUE);
             const int code = SUNLinSolSolve(linear->gmres, NULL, linear->x, linear->b, limit);
             linear->iterations += SUNLinSolNumIters(linear->gmres);
-            // after too many iterations Newton's iteration judges a solution with a reduced residual
+            // a reduced residual is good enough here, because Newton's iteration judges the solution
             if (code != SUN_SUCCESS && code != SUNLS_RES_REDUCED) {
                 return status_fail(STATUS_RETRY, "GMRES has found no solution");
             }
@@ -404,14 +407,14 @@ struct linear_counts linear_count(const struct linear *linear) {
     return counts;
 }
 
-// ---- matrix and linear solver of SUNDIALS, both empty
+// ---- matrix and linear solver of SUNDIALS: empty shells around the functions above
 
 static SUNMatrix_ID matrix_id(SUNMatrix matrix) {
     (void)matrix;
     return SUNMATRIX_CUSTOM;
 }
 
-// residual_jacobian sets the values to zero
+// nothing to do: residual_jacobian sets the values to zero
 static int matrix_zero(SUNMatrix matrix) {
     (void)matrix;
     return SUN_SUCCESS;

@@ -1,5 +1,6 @@
-/* modes.c: elimination of the algebraic unknowns; the exponents are then roots of a small nonlinear eigenvalue problem.
- * Continuation from the problem without memory of the wake to the full problem finds each root. */
+/* modes.c: after the algebraic unknowns have been eliminated, the exponents are roots of a small nonlinear eigenvalue
+ * problem. Each root is found by continuation from a wake without memory, for which the problem is linear, to the full
+ * one. */
 #include "solver/modes.h"
 
 #include <complex.h>
@@ -14,61 +15,63 @@
 #include "school/jacobian.h"
 #include "school/residual.h"
 
-/* Gauss points of the interval. */
+/* Gauss points of the interval, as fractions of it. */
 enum { N_POINTS = 2 };
 static const double point[N_POINTS] = {0.21132486540518712, 0.78867513459481288};
 
-/* The strength of the wake decays over at least this fraction of its length, because an abrupt end of the wake would
- * change the modes. */
+/* The strength of the wake fades over at least this fraction of its length, because an abrupt end would change the
+ * modes. */
 static const double window = 0.75;
 
-/* Largest |lambda| times the interval; largest decay over the life of the wake is exp(-slowest); relative accuracy of
- * lambda. */
+/* A mode is accepted if |lambda| times the interval is at most fastest, and if it decays over the life of the wake by
+ * at most exp(-slowest). lambda is found to this relative accuracy. */
 static const double fastest = 0.4, slowest = 6, accuracy = 1e-7;
 
-/* Number of candidates; steps of the continuation; iterations and inverse iterations of a step. */
+/* Number of candidates, steps of the continuation, and iterations and inverse iterations in each step. */
 enum { CANDIDATES = 24, STEPS = 4, ITERATIONS = 30, INNER = 2 };
 
-/* Two modes are identical if they differ by less than this fraction of the larger mode. */
+/* Two modes are the same if they differ by less than this fraction of the larger one. */
 static const double same = 1e-4;
 
 struct modes {
     struct arena *arena; /* freed by modes_find */
     struct residual *residual;
     struct state *state;
-    int n_all, n, n_slow, n_shed; /* unknowns of the school; unknowns that are not prescribed; differential unknowns;
-                                     circulations, one of each fish */
-    int *number;                  /* 0, 1, ...                                          (n_all) */
-    int *unknown;                 /* unknowns that are not prescribed, differential first       (n) */
-    double *by_value, *by_rate;   /* dF/dy and dF/dy' without algebraic unknowns: rows of differential unknowns and of
-                                     circulations; columns of differential unknowns     (n_slow + n_shed, n_slow) */
-    double *eliminate;            /* combination of all rows into these rows            (n_slow + n_shed, n) */
-    double *y;                    /* unknowns within the interval                       (n_all) */
-    double *plain, *shifted;      /* residuals of the school                            (n_all) */
-    double **label;               /* circulations of the wakes before, oldest first     (n_shed, n_vortex) */
-    double *shed;                 /* (n_shed) */
+    /* numbers of the unknowns of the school, of those that are not prescribed, of the differential ones among them, and
+     * of circulations, one for each fish */
+    int n_all, n, n_slow, n_shed;
+    int *number;  /* 0, 1, ...                                          (n_all) */
+    int *unknown; /* unknowns that are not prescribed, differential first       (n) */
+    /* dF/dy and dF/dy' after the algebraic unknowns are eliminated: rows of differential unknowns and of circulations,
+     * columns of differential unknowns                                                   (n_slow + n_shed, n_slow) */
+    double *by_value, *by_rate;
+    double *eliminate;       /* how all rows combine into these rows            (n_slow + n_shed, n) */
+    double *y;               /* unknowns within the interval                       (n_all) */
+    double *plain, *shifted; /* residuals of the school                            (n_all) */
+    double **label;          /* circulations of the wakes as they were, oldest first     (n_shed, n_vortex) */
+    double *shed;            /* (n_shed) */
 };
 
 // ---- the wake
 
-/* Age of marker i in events, 0 for the newest one: dropped markers leave gaps. */
+/* The age of marker i in events, 0 for the newest one. Dropped markers leave gaps, so the index does not tell it. */
 static int marker_age(const struct wake *wake, double interval, int i) {
     return (int)lround((wake->birth[wake->n_vortex - 1] - wake->birth[i]) / interval);
 }
 
-/* Number of events of the wake, with the markers that were dropped. */
+/* The length of the wake in events, with the markers that were dropped. */
 static int wake_length(const struct wake *wake, double interval) {
     return wake->n_vortex > 0 ? marker_age(wake, interval, 0) + 1 : 0;
 }
 
-/* Set the labels of a fish to the labels shed by a motion with exponent lambda, tau after the event: real or imaginary
- * part, times a factor. */
+/* Set the labels of a fish to those that a motion with exponent lambda has shed, tau after the event: their real or
+ * imaginary part, times a factor. */
 static void put_labels(const struct modes *modes, int f, double complex lambda, double tau, int is_imaginary,
                        double factor) {
     struct wake *const wake = &modes->state->wake[f];
     const struct school *const school = modes->residual->school;
     const double interval = school->interval;
-    // no window for a wake of full length that decays
+    // a wake of full length that decays by itself needs no window
     const int length = wake_length(wake, interval);
     const bool has_all = (length + 2) * interval >= school->lifetime;
     const bool is_whole = has_all && school->decay >= 0.99 * window * school->lifetime;
@@ -88,7 +91,8 @@ static void put_labels(const struct modes *modes, int f, double complex lambda, 
     wake->version++;
 }
 
-/* The residual tau after the event: all nodes of a body have the velocity of the first node. */
+/* Evaluate the residual tau after the event, where all nodes of a body have moved with the velocity of the first
+ * node. */
 static enum status modes_evaluate(const struct modes *modes, double tau, double *value) {
     const struct state *const state = modes->state;
     const struct school *const school = modes->residual->school;
@@ -104,10 +108,10 @@ static enum status modes_evaluate(const struct modes *modes, double tau, double 
     return status == STATUS_RETRY ? status_fail(STATUS_SOLVER, "%s", status_message()) : status;
 }
 
-/* w_f(lambda), reduced, mean over the interval                                      (n_slow + n_shed) */
+/* Find w_f(lambda), reduced, as the mean over the interval                               (n_slow + n_shed) */
 static enum status wake_column(const struct modes *modes, int f, double complex lambda, double complex *column) {
     const struct school *const school = modes->residual->school;
-    // small compared with a circulation of the stream: the forces are quadratic in the circulation
+    // small compared with a circulation of the stream, because the forces are quadratic in the circulation
     const double factor = 1e-4 * school->fish[f].length * school->fish[f].length;
     const int rows = modes->n_slow + modes->n_shed;
     for (int i = 0; i < rows; i++) column[i] = 0;
@@ -127,7 +131,6 @@ static enum status wake_column(const struct modes *modes, int f, double complex 
         }
     }
 
-    // restore the labels
     for (int g = 0; g < modes->n_shed; g++) {
         struct wake *const wake = &modes->state->wake[g];
         memcpy(wake->circulation, modes->label[g], (size_t)wake->n_vortex * sizeof *wake->circulation);
@@ -140,7 +143,7 @@ static enum status wake_column(const struct modes *modes, int f, double complex 
 
 // ---- the linear equations
 
-/* List the unknowns that are not prescribed, first the unknowns with a rate in an equation. */
+/* List the unknowns that are not prescribed, those whose rate occurs in an equation first. */
 static void modes_list(struct modes *modes, const struct jacobian *jacobian, const double *by_rate) {
     const struct school *const school = modes->residual->school;
     const int n = modes->n_all;
@@ -160,8 +163,8 @@ static void modes_list(struct modes *modes, const struct jacobian *jacobian, con
     }
 }
 
-/* Eliminate the algebraic unknowns. Their columns of dF/dy are C = Q [R; 0]: the last columns of Q times all equations
- * are free of algebraic unknowns. R gives an algebraic circulation: Gamma + z^T Q^T (rest) = 0 with R^T z = e. */
+/* Eliminate the algebraic unknowns. Their columns of dF/dy are C = Q [R; 0], so the last columns of Q times all
+ * equations do not contain them. R yields a circulation that is algebraic: Gamma + z^T Q^T (rest) = 0, R^T z = e. */
 static enum status modes_reduce(struct modes *modes, const double *by_value, const double *by_rate) {
     const int n = modes->n, slow = modes->n_slow, fast = n - slow, rows = slow + modes->n_shed;
     const size_t n_rows = (size_t)rows, n_all = (size_t)modes->n_all;
@@ -183,11 +186,11 @@ static enum status modes_reduce(struct modes *modes, const double *by_value, con
     for (int i = 0; i < n; i++) q[i + n * i] = 1;
     if (fast > 0) LAPACKE_dormqr(LAPACK_COL_MAJOR, 'L', 'N', n, n, fast, c, n, tau, q, n);
 
-    // the last columns of Q: equations without algebraic unknowns
+    // the last columns of Q give the equations without algebraic unknowns
     for (int row = 0; row < slow; row++) {
         for (int k = 0; k < n; k++) modes->eliminate[row + rows * k] = q[k + n * (fast + row)];
     }
-    // a circulation is differential, or follows from a row of R^-1 Q^T
+    // a circulation is either differential, or it follows from a row of R^-1 Q^T
     for (int f = 0; f < modes->n_shed; f++) {
         const int circulation = modes->residual->school->fish[f].at.circulation;
         int place = 0;
@@ -215,7 +218,7 @@ static enum status modes_reduce(struct modes *modes, const double *by_value, con
             }
         }
     }
-    // a circulation that is slow is itself
+    // the equation of a circulation that is differential says that it is itself
     for (int f = 0; f < modes->n_shed; f++) {
         for (int j = 0; j < slow; j++) {
             if (modes->unknown[j] == modes->residual->school->fish[f].at.circulation) {
@@ -236,7 +239,7 @@ struct following {
     lapack_int *pivot;             /* (rows) */
 };
 
-/* Find the exponent near lambda with this fraction (part) of the memory of the wake; *found: converged. */
+/* Find the exponent near lambda if the wake has this fraction (part) of its memory. *found: it converged. */
 static enum status mode_solve(const struct modes *modes, struct following *at, double part, double complex *lambda,
                               int *found) {
     const int slow = modes->n_slow, rows = slow + modes->n_shed;
@@ -260,7 +263,7 @@ static enum status mode_solve(const struct modes *modes, struct following *at, d
         }
         double complex change = 0;
         for (int inner = 0; inner < INNER; inner++) {
-            // the derivative of the matrix by lambda, for a constant wake, times a vector
+            // the derivative of the matrix by lambda with the wake held constant, times a vector
             for (int i = 0; i < rows; i++) at->next[i] = 0;
             for (int j = 0; j < slow; j++) {
                 for (int i = 0; i < rows; i++) at->next[i] += modes->by_rate[i + rows * j] * at->vector[j];
@@ -291,8 +294,8 @@ struct candidate {
     double complex *vector; /* (rows) */
 };
 
-/* The exponents of a wake without memory, with labels equal to the present circulation: eigenvalues of -E^-1 A without
- * the circulations. real, imaginary (n_slow), vectors (n_slow, n_slow) */
+/* The exponents of a wake without memory, whose labels all equal the present circulation. They are the eigenvalues of
+ * -E^-1 A after the circulations have been eliminated. real, imaginary (n_slow), vectors (n_slow, n_slow) */
 static enum status find_still(const struct modes *modes, const double complex *still, double *real, double *imaginary,
                               double *vectors) {
     const int slow = modes->n_slow, shed = modes->n_shed, rows = slow + shed;
@@ -304,7 +307,7 @@ static enum status find_still(const struct modes *modes, const double complex *s
     NEW(modes->arena, pivot, rows);
     double *const e = a + size;
 
-    // circulations by the slow unknowns: -(W + 1)^-1 (B, D)
+    // the circulations as functions of the slow unknowns: -(W + 1)^-1 (B, D)
     double *const by_value = last + shed * shed, *const by_rate = by_value + shed * slow;
     for (int f = 0; f < shed; f++) {
         for (int g = 0; g < shed; g++) last[g + shed * f] = creal(still[slow + g + rows * f]) + (f == g);
@@ -329,7 +332,7 @@ static enum status find_still(const struct modes *modes, const double complex *s
     return failed ? status_fail(STATUS_SOLVER, "the modes of the bodies cannot be told apart") : STATUS_OK;
 }
 
-/* Whether the events resolve a mode, and the mode lives as long as the wake; loosely: factor on both limits. */
+/* Whether the events resolve a mode and the mode lasts as long as the wake. loosely: a factor on both limits. */
 static int is_resolved(const struct modes *modes, double complex lambda, double loosely) {
     const double interval = modes->residual->school->interval;
     double life = interval;
@@ -364,7 +367,6 @@ static enum status modes_find_all(const struct modes *modes, int n_most, struct 
         const bool is_slow = n_candidates < CANDIDATES || cabs(candidates[CANDIDATES - 1].lambda) > cabs(lambda);
         if (!is_resolved(modes, lambda, 3) || !is_slow) continue;
 
-        // insert the candidate, sorted by size
         int i = n_candidates < CANDIDATES ? n_candidates++ : CANDIDATES - 1;
         double complex *const vector = candidates[i].vector;
         for (; i > 0 && cabs(candidates[i - 1].lambda) > cabs(lambda); i--) candidates[i] = candidates[i - 1];
@@ -407,7 +409,7 @@ static enum status modes_pose(struct modes *modes) {
     NEW(arena, modes->plain, n);
     NEW(arena, modes->shifted, n);
 
-    // keep the labels of the wakes
+    // keep the labels, to restore them
     const int n_fish = modes->residual->school->n_fish;
     NEW(arena, modes->label, n_fish);
     NEW(arena, modes->shed, n_fish);
@@ -448,7 +450,7 @@ enum status modes_find(struct arena *arena, struct residual *residual, struct st
                           .n_all = residual->school->n_unknowns};
     const double reach = residual->couplings.reach;
     *n = 0;
-    // couple all bodies at any distance
+    // at any distance, because the problem is small and has to be exact
     residual->couplings.reach = 1e6 * residual->school->fish[0].length;
     enum status status = modes_pose(&modes);
     if (status == STATUS_OK && modes.n_slow > 0) status = modes_find_all(&modes, n_most, mode, n);

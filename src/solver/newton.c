@@ -1,4 +1,4 @@
-/* newton.c: KINSOL with a dense matrix. */
+/* newton.c: KINSOL with a dense matrix, and least squares by LAPACK. */
 #include "solver/newton.h"
 
 #include <lapacke.h>
@@ -15,7 +15,7 @@ struct solver {
     struct sundials_context context;
 };
 
-// a failure of a callback is final: evaluations are too expensive for smaller steps
+// a failed callback ends the solution: evaluations are too expensive to try smaller steps
 static int newton_value_of(N_Vector u, N_Vector value, void *data) {
     struct solver *const solver = data;
     solver->failure = solver->problem->value(solver->problem->data, N_VGetArrayPointer(u), N_VGetArrayPointer(value));
@@ -48,7 +48,7 @@ enum status newton_solve(struct arena *arena, const struct newton *problem, doub
     sundials_context_reserve(context, 12);  // KINSOL clones 5
     void *const kinsol = sundials_context_own(context, OWNED_KINSOL, KINCreate(context->context));
 
-    // small steps do not end the iteration
+    // the step tolerance is so small that short steps do not end the iteration
     if (KINSetErrHandlerFn(kinsol, sundials_context_message, &solver->failure) || KINSetUserData(kinsol, solver) ||
         KINInit(kinsol, newton_value_of, unknowns) || KINSetLinearSolver(kinsol, linear, matrix) ||
         KINSetJacFn(kinsol, newton_jacobian_of) || KINSetMaxSetupCalls(kinsol, problem->reuse) ||
@@ -57,7 +57,7 @@ enum status newton_solve(struct arena *arena, const struct newton *problem, doub
         return status_fail(STATUS_SOLVER, "KINSOL cannot be set up: %s", status_message());
     }
 
-    // five longest steps in a row are no reason to stop
+    // five steps of the largest allowed size in a row are no reason to stop
     int code = KIN_MXNEWT_5X_EXCEEDED;
     long n_iterations = 0, n = 0;
     while (code == KIN_MXNEWT_5X_EXCEEDED && n_iterations < problem->max_iterations) {
@@ -81,8 +81,8 @@ enum status newton_solve(struct arena *arena, const struct newton *problem, doub
 
 // ---- least squares and eigenvalues of LAPACK
 
-/* Directions in which the columns are below this fraction of the largest column have decayed: the remaining columns are
- * errors of the integration. */
+/* Directions in which the columns are below this fraction of the largest column count as decayed: what is left there is
+ * the error of the integration. */
 static const double least_singular = 0.03;
 
 /* Eigenvalues of decayed directions are below this limit. */
@@ -99,8 +99,8 @@ enum status newton_multipliers(struct arena *arena, int n, int n_columns, const 
     NEW(scratch, images, (size_t)n * (size_t)m);
     NEW(scratch, pivot, n);
 
-    // The transposed map is the solution X of before^T X = after^T, and has the same eigenvalues. real is scratch for
-    // the singular values; rows of images below n contain the residuals.
+    // before^T X = after^T has as its solution X the transposed map, whose eigenvalues are the same. real serves as
+    // scratch for the singular values; the rows of images below n receive the residuals.
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < m; j++) {
             matrix[j + m * i] = before[i + n * j];
@@ -121,7 +121,7 @@ enum status newton_multipliers(struct arena *arena, int n, int n_columns, const 
         return status_fail(STATUS_SOLVER, not_apart);
     }
 
-    // sort by absolute value; both values of a complex pair have the same modulus up to rounding
+    // sort by absolute value, in which the two members of a complex pair agree up to rounding
     for (int i = 0; i < n; i++) {
         double re = real[i], im = imaginary[i];
         if (hypot(re, im) < dead_multiplier) re = im = 0;

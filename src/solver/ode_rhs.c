@@ -1,4 +1,4 @@
-/* ode_rhs.c: sheets, flow, control, accelerations, each by a linear solve or a formula. */
+/* ode_rhs.c: sheets, flow, control and accelerations in this order, each by a linear solution or a formula. */
 #include "solver/ode_rhs.h"
 
 #include <lapacke.h>
@@ -11,28 +11,32 @@
 #include "flow/flow_derivative.h"
 #include "force/bound_sheet.h"
 
-/* Rows and columns of one fish: strengths (with the Kutta condition at the edge the shed circulation is an unknown),
- * then with momenta the velocities of the nodes, x and y. */
+/* The rows and columns of one fish in the dense system: strengths (including the shed circulation if the Kutta
+ * condition at the edge makes it an unknown), then, with momenta, the velocities of the nodes, x and y. */
 struct ode_slices {
     int strengths, velocities, end;
 };
 
 struct ode_rhs {
     struct residual *residual;
-    double *no_sheets; /* the unknowns with sheets and nascent vortices of no strength    (n_unknowns) */
+    double *no_sheets; /* the unknowns with sheets and nascent vortices set to no strength    (n_unknowns) */
     struct influence_block *influence; /* of the vortices of fish g on the points of fish f     (n_fish, n_fish) */
 
-    /* the dense system of all sheets, column after column: strengths and, with momenta, velocities of each fish */
+    /* the dense system of all sheets, column after column: for each fish strengths and, with momenta, velocities */
     int n;
-    struct ode_slices *at;     /*                                                                       (n_fish) */
-    double *matrix, *solution; /* solution: initially the right-hand side                          (n, n), (n) */
-    lapack_int *pivot;         /*                                                                           (n) */
+    struct ode_slices *at; /*                                                                       (n_fish) */
+    double *matrix,
+        *solution;     /* solution: before the solution the right-hand side                              (n, n), (n) */
+    lapack_int *pivot; /*                                                                           (n) */
 
-    /* lower band of the mass matrix of one fish with added mass, column after column; right-hand side, or a momentum */
+    /* lower band of the mass matrix of one fish with its added mass, column after column; right-hand side, or a
+     * momentum */
     double *band, *force;
 };
 
-enum { BANDWIDTH = 4 }; /* of the mass matrix with x and y of a node in neighbouring rows: diagonal and three below */
+enum {
+    BANDWIDTH = 4
+}; /* of the mass matrix if x and y of a node are neighbouring rows: the diagonal and three below */
 
 struct ode_rhs *ode_rhs_create(struct arena *arena, struct residual *residual) {
     const struct school *const school = residual->school;
@@ -70,7 +74,7 @@ static double *entry(const struct ode_rhs *d, int row, int column) {
     return &d->matrix[(long)column * d->n + row];
 }
 
-// the rows of fish f and the right-hand side: minus the residual with all unknown strengths zero
+// fill the rows of fish f and the right-hand side, which is minus the residual with all unknown strengths zero
 static void assemble_fish(struct ode_rhs *d, int f, double t, const double *y, double *rhs) {
     const struct residual *residual = d->residual;
     const struct school *const school = residual->school;
@@ -79,7 +83,7 @@ static void assemble_fish(struct ode_rhs *d, int f, double t, const double *y, d
     const struct ode_slices at = d->at[f];
     const int first = residual->flow->points[f].first, row = at.strengths, last = fish->n_sheet - 1;
 
-    // Kelvin's theorem and the edge condition
+    // Kelvin's theorem, and the condition at the edge
     const int kelvin = row + fish->n_control, kutta = row + fish->n_sheet;
     rhs[kelvin] =
         residual_lost(residual, f, t) - (edge ? residual->state->wake[f].shed_before : y[fish->at.circulation]);
@@ -90,7 +94,7 @@ static void assemble_fish(struct ode_rhs *d, int f, double t, const double *y, d
         rhs[kutta] = 0;
     }
 
-    // impermeability: own sheet, own velocities, and the vortices of all fish
+    // impermeability: the end corrections of the own sheet, own velocities, and the vortices of all fish
     double *const value = residual->scratch;
     bound_sheet_residual(fish, residual_lost(residual, f, t), residual->flow->u + first, residual->flow->v + first,
                          d->no_sheets, value);
@@ -120,7 +124,7 @@ static void assemble_fish(struct ode_rhs *d, int f, double t, const double *y, d
         }
     }
 
-    // the equations of the velocities: m v + I = m p, or the prescribed motion
+    // the equations of the velocities: m v + I = m p, or the prescribed velocity
     for (int m = 0; m < at.end - at.velocities; m++) {
         const int i = m / fish->n_nodes, k = m % fish->n_nodes;
         *entry(d, at.velocities + m, at.velocities + m) = 1;
@@ -136,13 +140,14 @@ static void assemble_fish(struct ode_rhs *d, int f, double t, const double *y, d
     }
 }
 
-// strengths of bound vortices and, with the edge condition, of nascent vortices; with momenta also velocities
+// solve for the strengths of bound vortices and, with the edge condition, of nascent ones; with momenta also for
+// velocities
 static enum status solve_sheets(struct ode_rhs *d, double t, double *y) {
     const struct residual *residual = d->residual;
     const struct school *school = residual->school;
     const struct state *state = residual->state;
 
-    // the velocity of the fluid without sheets and nascent vortices, and the influence of sheets and nascent vortices
+    // the velocity of the fluid without sheets and nascent vortices, and what each of these adds per strength
     memcpy(d->no_sheets, y, (size_t)school->n_unknowns * sizeof *y);
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
@@ -197,12 +202,12 @@ static void add_sheets(struct ode_rhs *d, const double *y) {
     }
 }
 
-// an entry of the mass matrix, row not above column; rows 2 k and 2 k + 1 are x and y of node k
+// an entry of the mass matrix, whose row is not above its column; rows 2 k and 2 k + 1 are x and y of node k
 static double *mass_entry(double *band, int row, int column) {
     return &band[BANDWIDTH * column + row - column];
 }
 
-// the accelerations, and the momenta of nodes with given velocity
+// find the accelerations, and the momenta of nodes whose velocity is given
 static enum status find_accelerations(struct ode_rhs *d, int f, double t, double *y) {
     const struct fish *fish = &d->residual->school->fish[f];
     const lapack_int n = 2 * fish->n_nodes;
@@ -213,7 +218,7 @@ static enum status find_accelerations(struct ode_rhs *d, int f, double t, double
     residual_balance(d->residual, f, y, value);
     for (int i = 0; i < n; i++) force[i] = -value[(i % 2 == 0 ? fish->at.ax : fish->at.ay) + i / 2];
 
-    // the mass matrix: nodes, and added mass of the edges across
+    // the mass of the nodes, and the added mass of each edge across its direction
     memset(band, 0, (size_t)n * BANDWIDTH * sizeof *band);
     for (int i = 0; i < n; i++) *mass_entry(band, i, i) = fish->mass[i / 2];
     for (int k = 0; k < fish->n_edges; k++) {
@@ -227,7 +232,7 @@ static enum status find_accelerations(struct ode_rhs *d, int f, double t, double
         }
     }
 
-    // replace rows and columns of prescribed accelerations by rows and columns of the identity
+    // where an acceleration is prescribed, its row and column become those of the identity
     for (int given = 0; given < 2 * fish_n_prescribed(fish); given++) {
         if (!fish_is_prescribed(fish, given / 2, given % 2)) continue;
         double position[2], velocity[2], acceleration[2];
@@ -247,7 +252,7 @@ static enum status find_accelerations(struct ode_rhs *d, int f, double t, double
     }
     for (int i = 0; i < n; i++) y[(i % 2 == 0 ? fish->at.ax : fish->at.ay) + i / 2] = force[i];
 
-    // given momenta: residual_balance has updated the pressure
+    // the momenta of prescribed nodes; residual_balance has updated the pressure
     const struct pressure *const pressure = d->residual->pressure[f];
     for (int m = 0; m < n && pressure; m++) {
         const int k = m % fish->n_nodes;
@@ -271,7 +276,7 @@ enum status ode_rhs_rates(struct ode_rhs *d, double t, double *y, double *yp) {
     TRY(contact_find(d->residual->contact, state, t, y));
     TRY(solve_sheets(d, t, y));
 
-    // the velocity of rings has a divergence, which the influence omits
+    // the velocity of rings has a divergence, which the influence leaves out
     const int has_legs = d->residual->flow->kernel->has_legs;
     if (has_legs) flow_velocity(d->residual->flow, state, t, y, false);
     if (!has_legs) add_sheets(d, y);
@@ -282,7 +287,7 @@ enum status ode_rhs_rates(struct ode_rhs *d, double t, double *y, double *yp) {
         const struct fish *const fish = &school->fish[f];
         const size_t size = 2 * (size_t)fish->n_nodes * sizeof *y;
 
-        // the control law is phi0 minus a value independent of phi0
+        // the control law is phi0 minus a value that does not depend on phi0
         y[at->phi0] = 0;
         control_residual(fish, &state->control[f], t, t - state->t, y, d->residual->scratch);
         y[at->phi0] = -d->residual->scratch[at->phi0];

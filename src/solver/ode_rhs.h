@@ -1,6 +1,6 @@
-/* ode_rhs.h: the equations as an ordinary differential equation dy/dt = f(t, y) for explicit methods. Every evaluation
- * solves for the algebraic unknowns in sequence, without iteration. doc/model.md, section 10. Tested by
- * tests/solver/test_ode_rhs.c.
+/* ode_rhs.h: the same equations as an ordinary differential equation dy/dt = f(t, y), which explicit methods need.
+ * Every evaluation solves for the algebraic unknowns one group after the other, without iteration. doc/model.md,
+ * section 10. Tested by tests/solver/test_ode_rhs.c.
  *
  * Given positions and velocities, the sequence is
  *
@@ -21,8 +21,8 @@ struct ode_rhs;
 struct ode_rhs *ode_rhs_create(struct arena *arena, struct residual *residual);
 
 /* Compute the algebraic unknowns of y at time t [s], set prescribed nodes to their paths, and set the rates yp of the
- * differential unknowns (rates of algebraic unknowns become 0); both arrays are (n_unknowns). Fails with STATUS_RETRY
- * if a value is not finite, a body is torn or a system has no solution. */
+ * differential unknowns; rates of algebraic unknowns become 0. Both arrays are (n_unknowns). Fails with STATUS_RETRY if
+ * a value is not finite, a body is torn or a system has no solution. */
 enum status ode_rhs_rates(struct ode_rhs *rhs, double t, double *y, double *yp);
 
 #endif

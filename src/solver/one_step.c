@@ -1,4 +1,5 @@
-/* one_step.c: implicit methods of fixed step applied to the residual of the school, and Verlet's method. */
+/* one_step.c: methods of fixed step for comparisons, implicit ones on the residual of the school, and Verlet's
+ * method. */
 #include <math.h>
 #include <string.h>
 
@@ -8,13 +9,13 @@
 #include "solver/linear.h"
 #include "solver/ode_rhs.h"
 
-/* Tolerance of Newton's iteration as a fraction of the tolerance of the unknowns. */
+/* Newton's iteration has to reach this fraction of the tolerance of each unknown. */
 static const double newton_coefficient = 0.01;
 
-/* Tolerance of the linear solver as a fraction of the right-hand side; the error of an old Jacobian is larger. */
+/* The linear solver has to reach this fraction of the right-hand side; an old Jacobian causes a larger error anyway. */
 static const double linear_relative = 1e-3;
 
-/* Keep a Jacobian while each correction is at most this fraction of the preceding correction. */
+/* A Jacobian is kept while each correction is at most this fraction of the one before. */
 static const double slow_rate = 0.3;
 
 enum { MAX_ITERATIONS = 12 };
@@ -22,7 +23,7 @@ enum { MAX_ITERATIONS = 12 };
 /* Equal steps from one event to the next. */
 struct steps {
     double start, h; /* s */
-    long i, n;       /* steps done, of all */
+    long i, n;       /* number of steps done, and of all steps */
 };
 
 static void steps_begin(struct steps *steps, double start, double interval, double step) {
@@ -30,7 +31,7 @@ static void steps_begin(struct steps *steps, double start, double interval, doub
     *steps = (struct steps){.start = start, .h = interval / (double)n, .n = n};
 }
 
-// the end of the next step: the last one ends at the event t
+// the end of the next step; the last one ends exactly at the event t
 static double steps_next(struct steps *steps, double t) {
     steps->i++;
     return steps->i < steps->n ? steps->start + (double)steps->i * steps->h : t;
@@ -50,7 +51,7 @@ struct one_step {
     double *before, *rates;          /* unknowns and rates at the start of the step     (n_unknowns) */
     double *correction, *right_hand; /* Newton's                                        (n_unknowns) */
     double *older;                   /* imex: unknowns one step before `before`         (n_unknowns) */
-    double *forces[2], *given;       /* imex, rows ax, ay: R_n, R_n-1, extrapolated R, N (n_unknowns) */
+    double *forces[2], *given;       /* imex, rows ax and ay: R_n, R_n-1, and R extrapolated, N (n_unknowns) */
     int n_known;                     /* imex: how many of R_n, R_n-1 are known */
     struct integrator_rates *algebraic_rates;
     struct integrator_counts counts;
@@ -75,7 +76,8 @@ static enum status one_step_create(struct arena *arena, void **created, struct r
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) NEW(arena, *arrays[i], n);
     residual_kinds(residual, &residual_run, solver->kind);
     for (int i = 0; i < n; i++) {
-        // the errors of Newton's iteration in the velocities of a stiff body add up to a spurious momentum
+        // without this factor, errors of Newton's iteration in the velocities of a stiff body add up to a spurious
+        // momentum
         const double tolerance = options->rtol * residual_scale(residual->school, i);
         solver->tolerance[i] = tolerance * residual_undamped(residual->school, i);
     }
@@ -96,7 +98,7 @@ static void one_step_count(const void *data, struct integrator_counts *counts) {
     integrator_count_linear(counts, &solver->options.before, &linear);
 }
 
-// the history: the Jacobian, and of imex the forces and unknowns before
+// the history consists of the Jacobian and, for imex, of the forces and unknowns before
 static enum status one_step_restart(void *data) {
     struct one_step *const solver = data;
     solver->cj = 0;
@@ -107,7 +109,7 @@ static enum status one_step_restart(void *data) {
 
 // ---- one step
 
-/* The rates at the end of the step, from the unknowns there. */
+/* Set the rates at the end of the step from the unknowns there. */
 static void one_step_rates(struct one_step *solver, double h) {
     struct state *const state = solver->state;
     const bool is_trapezoid = solver->options.method == METHOD_TRAPEZOID, has_older = solver->n_known == 2;
@@ -120,7 +122,7 @@ static void one_step_rates(struct one_step *solver, double h) {
     }
 }
 
-/* imex: move on to the step from t to t + h: find R_n, and extrapolate. */
+/* imex: move on to the step from t to t + h, that is find R_n there and extrapolate it. */
 static enum status one_step_extrapolate(struct one_step *solver, double t) {
     struct residual *const residual = solver->residual;
     double *const older = solver->forces[1], *const known = solver->forces[0];
@@ -143,7 +145,7 @@ static enum status one_step_extrapolate(struct one_step *solver, double t) {
     return STATUS_OK;
 }
 
-/* Newton's iteration, starting from the unknowns in the state. STATUS_RETRY: no convergence. */
+/* Newton's iteration, which starts from the unknowns in the state. STATUS_RETRY: it does not converge. */
 static enum status one_step_iterate(struct one_step *solver, const struct residual_mode *mode, double t, double h) {
     struct residual *const residual = solver->residual;
     struct state *const state = solver->state;
@@ -152,7 +154,6 @@ static enum status one_step_iterate(struct one_step *solver, const struct residu
     for (int i = 0; i < MAX_ITERATIONS; i++) {
         TRY(status_ask(solver->stop));
 
-        // evaluate and factorise the Jacobian
         if (solver->cj != cj || solver->pattern != residual->couplings.pattern) {
             solver->pattern = residual->couplings.pattern;
             solver->counts.jacobian_evaluations++;
@@ -164,7 +165,7 @@ static enum status one_step_iterate(struct one_step *solver, const struct residu
             solver->cj = cj;
         }
 
-        // correct the unknowns; size of the correction in tolerances
+        // correct the unknowns, and measure the correction in tolerances
         one_step_rates(solver, h);
         solver->counts.residual_evaluations++;
         solver->counts.newton_iterations++;
@@ -177,10 +178,10 @@ static enum status one_step_iterate(struct one_step *solver, const struct residu
         }
         if (!isfinite(size)) return STATUS_RETRY;
 
-        // the error after this correction, estimated from the rate of convergence
+        // estimate the error that is left after this correction from the rate of convergence
         const double rate = i > 0 ? size / before : 0;
         const double error = i > 0 && rate < 0.5 ? size * rate / (1 - rate) : size;
-        // at the level of rounding corrections no longer shrink
+        // at the level of rounding, corrections no longer shrink
         if (error < newton_coefficient || (rate > 0.9 && size < 1)) return STATUS_OK;
         if (rate > slow_rate) solver->cj = 0;
         before = size;
@@ -210,7 +211,7 @@ static enum status one_step_step(void *data, double t, double *reached) {
     memcpy(solver->before, state->y, size);
     memcpy(solver->rates, state->yp, size);
 
-    // the second attempt has a new Jacobian
+    // start from the extrapolated unknowns; if the iteration fails, try once more with a new Jacobian
     const struct residual_mode mode = {.forces = is_split ? solver->given : NULL};
     for (size_t k = 0; solver->n_known == 2 && k < size / sizeof *state->y; k++) {
         state->y[k] += solver->before[k] - solver->older[k];
@@ -318,7 +319,7 @@ static enum status verlet_step(void *data, double t, double *reached) {
     if (status > 0) return verlet_unstable(solver, now);
     TRY(status);
 
-    // the accelerations, and the other half of the kick; without acceleration the balance is minus the forces
+    // The accelerations, and the other half of the kick. Without acceleration the balance is minus the forces.
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         const struct layout *const at = &fish->at;
@@ -334,7 +335,7 @@ static enum status verlet_step(void *data, double t, double *reached) {
     solver->counts.steps_of_order[solver->counts.order - 1]++;
     solver->counts.residual_evaluations++;
 
-    // at the event also the sheets and the rates of the differential unknowns
+    // at the event, also find the sheets and the rates of the differential unknowns
     status = solver->steps.i == solver->steps.n ? ode_rhs_rates(solver->rhs, t, y, state->yp) : STATUS_OK;
     if (status > 0) return verlet_unstable(solver, t);
     TRY(status);

@@ -1,4 +1,4 @@
-/* runge_kutta.c: ARKStep applied to the right-hand side of ode_rhs.h. */
+/* runge_kutta.c: explicit Runge-Kutta methods, by ARKStep on the right-hand side of ode_rhs.h. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -16,27 +16,27 @@ struct runge_kutta {
     enum status failure;               /* of the last right-hand side */
     double *tolerance;                 /* absolute tolerance of each unknown                        (n_unknowns) */
 
-    /* the last evaluation: all unknowns, and rates */
+    /* the last evaluation, with all unknowns and rates, so that it need not be repeated */
     double *work, *rates; /*                                                           (n_unknowns) */
     bool known;           /* whether they are valid */
     double known_t;
     long known_event;
-    long evaluations; /* so far */
+    long evaluations; /* so far, over all restarts */
     struct integrator_rates *algebraic_rates;
 
     struct sundials_context context;
     N_Vector y, tolerances;
     void *arkode;
-    struct integrator_counts before; /* totals up to the last restart, which resets the totals of ARKODE */
+    struct integrator_counts before; /* totals up to the last restart, which sets those of ARKODE to zero */
 };
 
-// compute work and rates from the differential unknowns in y
+// compute work and rates from the differential unknowns in y, unless they are known
 static enum status runge_kutta_evaluate(struct runge_kutta *solver, double t, const double *y) {
     const struct school *const school = solver->residual->school;
     struct residual *const residual = solver->residual;
 
-    // one evaluation serves the end of a step and the start of the next: whether time, differential unknowns and wakes
-    // equal the arguments of the last evaluation
+    // One evaluation serves the end of a step and the start of the next. It is known if time, differential unknowns and
+    // wakes equal the arguments of the last evaluation.
     bool is_known = solver->known && t == solver->known_t && solver->state->event == solver->known_event;
     for (int f = 0; f < school->n_fish && is_known; f++) {
         const struct layout *at = &school->fish[f].at;
@@ -86,7 +86,8 @@ static enum status runge_kutta_create(struct arena *arena, void **created, struc
     NEW(arena, solver->work, n);
     NEW(arena, solver->rates, n);
     NEW(arena, solver->tolerance, n);
-    // algebraic unknowns have no rate and no error here; only a tolerance for velocities reveals an instability
+    // Algebraic unknowns have no rate and so no error here. Velocities need a tolerance, because only they reveal an
+    // instability.
     for (int i = 0; i < n; i++) {
         const double tolerance = options->rtol * residual_scale(school, i);
         solver->tolerance[i] = tolerance * residual_undamped(school, i);
@@ -98,7 +99,7 @@ static enum status runge_kutta_create(struct arena *arena, void **created, struc
     sundials_context_create(&solver->context, arena, n, 1, &solver->failure);
     solver->y = sundials_context_vector(&solver->context, state->y);
     solver->tolerances = sundials_context_vector(&solver->context, solver->tolerance);
-    sundials_context_reserve(&solver->context, 32);  // more than ARKODE clones for seven stages
+    sundials_context_reserve(&solver->context, 32);  // ARKODE clones fewer for seven stages
     struct sundials_context *const context = &solver->context;
 
     // the tableau of the method
@@ -118,8 +119,8 @@ static enum status runge_kutta_create(struct arena *arena, void **created, struc
 
     void *const arkode = solver->arkode = sundials_context_own(
         context, OWNED_ARKODE, ARKStepCreate(rates_callback, NULL, state->t, solver->y, context->context));
-    // 6.4 interpolates at the stop time, for order one by a constant: Hermite's interpolant is the mean of both ends of
-    // the step, Lagrange's interpolant the solution at the end
+    // At the stop time 6.4 interpolates, and at order one it does so by a constant: Hermite's interpolant would be the
+    // mean of both ends of the step, Lagrange's is the solution at the end.
     if (ARKStepSetErrHandlerFn(arkode, sundials_context_message, &solver->failure) ||
         ARKodeSetUserData(arkode, solver) || ARKStepSetTables(arkode, 0, 0, NULL, table) ||
         (table->q == 1 && ARKodeSetInterpolantType(arkode, ARK_INTERP_LAGRANGE)) ||
@@ -180,7 +181,7 @@ static enum status unstable(const struct runge_kutta *solver, double t, const ch
 
     const struct unknown_place place = residual_place(school, worst);
     const struct fish *const fish = &school->fish[place.fish];
-    // a too stiff body and an unstable control have the same symptom
+    // a body that is too stiff and an unstable control show the same symptom
     const char *const control = fish->control.law == CONTROL_NONE
                                     ? ""
                                     : "; or the control is unstable: lower control.gain, and check that the desired "
@@ -197,7 +198,7 @@ static enum status runge_kutta_begin(void *data, double t, const struct integrat
     struct runge_kutta *const solver = data;
     solver->stop = watch->stop;
 
-    // the event has changed the rates, which a method whose last stage is the next first one would take from before
+    // The event has changed the rates. A method whose last stage serves as the next first one would use the old ones.
     if (ARKodeReset(solver->arkode, solver->state->t, solver->y)) {
         return status_fail(STATUS_SOLVER, "ARKODE: %s", status_message());
     }
@@ -216,7 +217,7 @@ static enum status runge_kutta_step(void *data, double t, double *reached) {
     if (code < 0) return unstable(solver, *reached, status_message());
     if (code == ARK_TSTOP_RETURN) *reached = t;
 
-    // the algebraic unknowns and all rates at the end of the step, for the energy balance and the event
+    // find the algebraic unknowns and all rates at the end of the step, for the energy balance and the event
     const enum status status = runge_kutta_evaluate(solver, *reached, state->y);
     if (status > 0) return unstable(solver, *reached, status_message());
     TRY(status);

@@ -1,16 +1,17 @@
-/* sparse_factors.c: KLU with the choice of pivots. */
+/* sparse_factors.c: KLU, and when to choose new pivots. */
 #include "solver/sparse_factors.h"
 
 #include <klu.h>
 #include <stdbool.h>
 
-/* A diagonal pivot keeps the factors sparse. Use a diagonal pivot of at least diagonal_tolerance (the default of KLU)
- * times the largest entry of the column. If the reciprocal pivot growth is then below SPARSE_MIN_GROWTH, as in soft
- * rods of many nodes, the solution has too few digits for Newton's iteration: use the largest entries as pivots. */
+/* Pivots on the diagonal keep the factors sparse. One is used if it is at least diagonal_tolerance (the default of KLU)
+ * times the largest entry of its column. If the reciprocal pivot growth then falls below SPARSE_MIN_GROWTH, as it does
+ * in soft rods of many nodes, the solution has too few digits for Newton's iteration, and the largest entries become
+ * the pivots. */
 static const double diagonal_tolerance = 1e-3;
 
-/* Keep the pivots of an earlier matrix while reciprocal condition estimate and reciprocal pivot growth are at least
- * this fraction of the values when the pivots were chosen. */
+/* Pivots of an earlier matrix are kept while the estimate of the reciprocal condition number and the reciprocal pivot
+ * growth are at least this fraction of what they were when the pivots were chosen. */
 static const double min_quality = 1e-3;
 
 struct sparse_factors {
@@ -38,7 +39,8 @@ struct sparse_factors *sparse_factors_create(struct arena *arena) {
     return factors;
 }
 
-// choose pivots of at least this fraction (tolerance) of the largest entry; returns whether the matrix is regular
+// choose pivots of at least this fraction (tolerance) of the largest entry of their column; returns whether the matrix
+// is regular
 static bool sparse_factor(struct sparse_factors *factors, const struct sparse_columns *matrix, double tolerance) {
     klu_l_common *const common = &factors->common;
     klu_l_free_numeric(&factors->numeric, common);
@@ -66,10 +68,10 @@ bool sparse_factors_set_up(struct sparse_factors *factors, const struct sparse_c
         factors->version = matrix->version;
         factors->n = matrix->n;
     }
-    // without an analysis the matrix is structurally singular
+    // KLU analyses every pattern but those of structurally singular matrices
     if (!factors->symbolic) return false;
 
-    // the pivots of the last factorisation, if the factors are good
+    // try the last pivots first
     if (factors->numeric) {
         factors->counts.refactorisations++;
         if (klu_l_refactor(matrix->start, matrix->row, matrix->value, factors->symbolic, factors->numeric, common) &&
@@ -104,6 +106,6 @@ void sparse_factors_count(const struct sparse_factors *factors, struct klu_count
 long sparse_factors_non_zeros(const struct sparse_factors *factors) {
     const klu_l_numeric *const numeric = factors->numeric;
     if (!numeric) return 0;
-    // KLU counts the ones on the diagonal of L
+    // KLU also counts the ones on the diagonal of L
     return (long)numeric->lnz + (long)numeric->unz + (long)numeric->nzoff - (long)factors->n;
 }

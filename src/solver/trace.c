@@ -1,4 +1,4 @@
-/* trace.c: lines of comma-separated values. */
+/* trace.c: the format of the lines. */
 #include "solver/trace.h"
 
 #include <errno.h>
@@ -34,7 +34,7 @@ enum status trace_create(struct arena *arena, struct trace **trace, const char *
         "event,t,step,order,result,iterations,jacobians,age,cj_ratio,gmres,norms,differential_norms,rates,"
         "unknown,fish,correction\n",
         new->file);
-    // whole lines, also of a run that ends early
+    // write whole lines, so that the file of a run that ends early can be read
     setvbuf(new->file, NULL, _IOLBF, BUFSIZ);
     *trace = new;
     return STATUS_OK;
