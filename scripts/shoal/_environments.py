@@ -17,6 +17,7 @@ from . import _library as lib
 from ._draw import picture_of, snapshot_of
 from ._library import CaseError, SolverError, check, choice_of, index_of, kind, number_of, numbers_of
 from ._run import Run
+from ._vision import Vision
 
 
 def _from(module, name, otherwise):
@@ -59,9 +60,10 @@ _RENDER_MODES = ("rgb_array", "html")
 
 
 class _Event:
-    """The variables of a run at the last event, each read once."""
+    """The variables of a run at the last event, each read once, and the random numbers of what is seen of them."""
 
-    def __init__(self, run):
+    def __init__(self, run, random):
+        self.random = random
         self.begin(run)
 
     def begin(self, run):
@@ -79,8 +81,8 @@ class _Swimmer:
     """One controlled fish of a run: actions, observations and rewards. Observed vectors are in the frame of the fish,
     forwards and to the left, in body lengths."""
 
-    def __init__(self, event, fish, actions, observations, reward, goal, course, sensors):
-        self.event, self.fish = event, fish
+    def __init__(self, event, fish, actions, observations, reward, goal, course, sensors, vision):
+        self.event, self.fish, self.vision = event, fish, Vision(vision)
         run = event.run
         self.length, self.mass = float(run["body_length"][fish]), float(run["body_mass"][fish])
         self.n_joints, self.n_fish = int(run["n_joints"][fish]), len(run["n_joints"])
@@ -101,6 +103,8 @@ class _Swimmer:
         if not callable(reward):
             self._earned = [(number_of(weight, f"reward: {choice_of(name, list(self._EARNED), 'a reward')}"),
                              self._EARNED[name]) for name, weight in reward.items()]
+        if vision is not None and "sight" not in self.observations:
+            raise CaseError("vision belongs to the observation 'sight', which this environment does not have")
         for name in [*self.observations, *(() if callable(reward) else reward)]:
             if name == "pressure" and not (self.n_sensors and self.density > 0):
                 raise CaseError("'pressure' needs sensors in the case, fish.sensors, and a fluid")
@@ -160,7 +164,7 @@ class _Swimmer:
     def _size(self, name):
         sizes = {"curvature": self.n_joints, "muscle": self.n_joints, "flow": self.sensors.size,
                  "pressure": 2 * self.n_sensors, "goal": 3,
-                 "neighbours": 4 * (self.n_fish - 1), "action": len(self.actions)}
+                 "neighbours": 4 * (self.n_fish - 1), "sight": 5 * (self.n_fish - 1), "action": len(self.actions)}
         return sizes.get(name, 2)
 
     # -- actions
@@ -268,6 +272,12 @@ class _Swimmer:
         seen[:, 2:] = velocity[self.others] - velocity[self.fish]
         return (seen.reshape(-1, 2) @ np.array([[c, -s], [s, c]])).ravel() / self.length
 
+    def _see_sight(self):
+        bodies = [None if f == self.fish else x[np.isfinite(x[:, 0])] for f, x in enumerate(self.event("x"))]
+        headings = np.radians(self.event("heading"))
+        return self.vision.look(self.event("x")[self.fish, 0], headings[self.fish], self.length, bodies,
+                                self.event("com"), headings, self.event.random).ravel()
+
     _SEEN = {  # name: (function, bound)
         "velocity": (_see_velocity, 20),
         "heading": (_see_heading, 1),
@@ -278,6 +288,7 @@ class _Swimmer:
         "goal": (_see_goal, 1000),
         "closing": (_see_closing, 20),
         "neighbours": (_see_neighbours, 1000),
+        "sight": (_see_sight, 1000),
         "action": (lambda self: self.action, 20),
     }
 
@@ -343,9 +354,9 @@ class _Swim:
         self._far = None if far is None else number_of(far, "far, lengths,")
         self._kept = None
         self.run = Run(case, self._assignments)
-        self.event = _Event(self.run)
-        self._n_steps = 1 if act_every is None else self._n_events(number_of(act_every, "act_every, s,"))
         self._random = np.random.default_rng()
+        self.event = _Event(self.run, self._random)
+        self._n_steps = 1 if act_every is None else self._n_events(number_of(act_every, "act_every, s,"))
 
     @staticmethod
     def _checked_range(key, bounds):
@@ -377,7 +388,7 @@ class _Swim:
 
     def _choose_run(self, seed, options):
         if seed is not None:
-            self._random = np.random.default_rng(seed)
+            self._random = self.event.random = np.random.default_rng(seed)
         for name in options or {}:
             choice_of(name, self._OPTIONS, "reset: an option")
         changes = dict((options or {}).get("assignments", {}))
@@ -443,10 +454,12 @@ class SwimEnv(_Swim, _from("gymnasium", "Env", object)):
     case, assignments: as for shoal.Run; an episode ends (is truncated) at time.end. fish: the learning fish, by number or
     name. actions: names of bias, amplitude, frequency, or a dict with bounds {"bias": (-0.3, 0.3)}; an action outside
     the box is refused. observations: names of velocity, heading, curvature, muscle, flow, goal, closing, neighbours,
-    action. reward: weights of speed, cost_of_transport, course, goal, or a function of the swimmer. goal: a point (x, y),
+    sight, action. reward: weights of speed, cost_of_transport, course, goal, or a function of the swimmer. goal: a point (x, y),
     m, ("leader", (1.2, 0)), a place beside a fish, or a function of the time, s, for a goal that moves. course: desired course, degree. sensors: places (n, 2) for flow,
     from the nose, in lengths. act_every: time between actions, s, a multiple of time.shedding_interval. vary: bounds of
-    assignments that are drawn at each reset, {"fish[1].start.heading": (170, 190)}. far: distance from the goal, in
+    assignments that are drawn at each reset, {"fish[1].start.heading": (170, 190)}. vision: the eye of the observation
+    sight, a dict of range, lengths, angle, degree, noise, (of the distance, as a fraction; of the direction, rad), and
+    occlusion; usually {"range": 5, "angle": 300, "noise": (0, 0), "occlusion": True}. far: distance from the goal, in
     lengths, at which an episode is over (terminated); a failed integration terminates an episode too. render_mode:
     rgb_array, html or None.
     """
@@ -457,10 +470,11 @@ class SwimEnv(_Swim, _from("gymnasium", "Env", object)):
 
     def __init__(self, case, assignments=None, fish=0, actions=("bias",), observations=("velocity", "heading"),
                  reward=None, goal=None, course=180.0, sensors=_SENSORS, act_every=None, vary=None, far=None,
-                 render_mode=None):
+                 vision=None, render_mode=None):
         _Swim.__init__(self, case, assignments, act_every, vary, far, render_mode)
         number = index_of(fish, self.run.names, "fish")
-        self.swimmer = _Swimmer(self.event, number, actions, observations, reward or {"speed": 1.0}, goal, course, sensors)
+        self.swimmer = _Swimmer(self.event, number, actions, observations, reward or {"speed": 1.0}, goal, course, sensors,
+                                vision)
         self.action_space, self.observation_space = self.swimmer.action_space(), self.swimmer.observation_space()
         self._last, self._goal = None, goal
 
@@ -611,7 +625,7 @@ class SchoolEnv(_Swim, _from("pettingzoo", "ParallelEnv", object)):
 
     def __init__(self, case, assignments=None, fish=None, actions=("bias",),
                  observations=("velocity", "heading", "neighbours"), reward=None, goal=None, course=180.0,
-                 sensors=_SENSORS, act_every=None, vary=None, far=None, render_mode=None):
+                 sensors=_SENSORS, act_every=None, vary=None, far=None, vision=None, render_mode=None):
         _Swim.__init__(self, case, assignments, act_every, vary, far, render_mode)
         names = self.run.names
         self.possible_agents = [names[index_of(one, names, "fish")] for one in ([fish] if isinstance(fish, str) else
@@ -621,7 +635,7 @@ class SchoolEnv(_Swim, _from("pettingzoo", "ParallelEnv", object)):
         for name in self.possible_agents:
             own_goal = goal.get(name) if isinstance(goal, Mapping) else goal
             self.swimmers[name] = _Swimmer(self.event, names.index(name), actions, observations, reward or {"speed": 1.0},
-                                           own_goal, course, sensors)
+                                           own_goal, course, sensors, vision)
         self.action_spaces = {name: swimmer.action_space() for name, swimmer in self.swimmers.items()}
         self.observation_spaces = {name: swimmer.observation_space() for name, swimmer in self.swimmers.items()}
 

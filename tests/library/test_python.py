@@ -950,6 +950,57 @@ class Environments(unittest.TestCase):
             np.testing.assert_allclose(seen[first : first + 2], [of @ ahead, of @ left], rtol=1e-5, atol=1e-6)
         self.assertTrue(np.all(np.abs(seen[:2]) > 0.1), seen)
 
+    def test_sight_ends_at_the_range_behind_and_at_bodies(self):
+        # the eye is at (0, 0) and looks along -x, the heading of all fish; their bodies are lines of 4 edges along +x
+        case = {"time": {"end": 1, "shedding_interval": 0.02}, "defaults": {"fish": {"nodes": 5}},
+                "fish": [{"name": name, "start": {"position": position}} for name, position in
+                         (("eye", [0, 0]), ("near", [-2.5, 0.5]), ("far", [-6, 0.5]), ("behind", [3, 0.2]))]}
+
+        def seen(position=None, **vision):
+            moved = {"fish[1].start.position": position} if position else None
+            env = shoal.SwimEnv(case, moved, fish="eye", observations=("sight",), vision=vision)
+            first = env.reset(seed=4)[0].reshape(3, 5)
+            np.testing.assert_array_equal(first, env.reset(seed=4)[0].reshape(3, 5))
+            return first, env.run["com"]
+
+        first, com = seen(range=10, angle=360)
+        np.testing.assert_array_equal(first[:, 0], 1)
+        # left of a fish along -x is -y
+        np.testing.assert_allclose(first[:, 1:3], -com[1:], rtol=1e-6)
+        np.testing.assert_allclose(first[:, 3:], [[1, 0]] * 3, atol=1e-6)
+        # the tail of the near fish is 1.5 lengths from the eye, and 18.4 degrees off its heading; that of the far one 5
+        flags = lambda *a, **b: seen(*a, **b)[0][:, 0].tolist()  # noqa: E731
+        self.assertEqual(flags(range=1.5, angle=360), [0, 0, 0])
+        self.assertEqual(flags(range=1.6, angle=360), [1, 0, 0])
+        self.assertEqual(flags(range=5.1, angle=360), [1, 1, 1])
+        self.assertEqual(flags(range=10, angle=300), [1, 1, 0])
+        # the nose of the near fish is 11.3 degrees off, that of the far one 4.8
+        self.assertEqual(flags(range=10, angle=21), [0, 1, 0])
+        # a body across the line of sight hides the far fish, unless bodies are glass; what is seen of others stays
+        across = [-1.2, 0.07]
+        self.assertEqual(flags(across, range=10, angle=360, occlusion=False), [1, 1, 1])
+        hidden, _ = seen(across, range=10, angle=360)
+        self.assertEqual(hidden[:, 0].tolist(), [1, 0, 1])
+        np.testing.assert_array_equal(hidden[1], 0)
+
+    def test_the_noise_of_sight_has_the_size_that_was_asked_for(self):
+        env = shoal.SwimEnv(PAIR, fish=1, observations=("sight",), vision={"range": 50, "angle": 360, "noise": (0.1, 0.03)})
+        _, x, y, *_ = np.array([env.reset(seed=seed)[0] for seed in range(400)]).T
+        way = env.run["com"][0] - env.run["x"][1, 0]
+        distance, direction = np.hypot(x, y) / np.hypot(*way), np.arctan2(y, x) - np.arctan2(-way[1], -way[0])
+        direction = (direction + np.pi) % (2 * np.pi) - np.pi
+        # standard errors of a mean are 1/20, of a deviation 1/28, in units of the deviation
+        for values, mean, deviation in (distance, 1, 0.1), (direction, 0, 0.03):
+            self.assertLess(abs(values.mean() - mean), 0.2 * deviation)
+            self.assertLess(abs(values.std() / deviation - 1), 0.15)
+
+    def test_an_eye_that_cannot_be_is_refused(self):
+        for wrong in {"range": 0}, {"angle": 361}, {"noise": (0.1, -1)}, {"noise": 0.1}, {"colour": 1}, {"occlusion": 1}:
+            with self.assertRaisesRegex(shoal.CaseError, "vision"):
+                shoal.SwimEnv(PAIR, fish=1, observations=("sight",), vision=wrong)
+        with self.assertRaisesRegex(shoal.CaseError, "sight"):
+            shoal.SwimEnv(PAIR, fish=1, vision={"range": 3})
+
     def test_the_pressure_on_both_sides_is_that_at_the_sensors_of_the_case(self):
         sensors = {"fish[1].force": "pressure", "fish[1].body.depth": 0.25, "fish[1].sensors": [0.1, 0.6]}
         env = shoal.SwimEnv(PAIR, sensors, fish=1, observations=("pressure",), act_every=0.04)
