@@ -85,10 +85,11 @@ relative to the including file, else to the cases of the installation. The `name
 
 
 
-`--set` takes the path of any key and a value in YAML. Fish are counted from 0; `fish[*]` is every fish.
+`--set` takes the path of any key and a value in YAML. Fish are counted from 0, or addressed by their names; `fish[*]` is
+every fish.
 
 ```console
-shoal run pair.yaml --set time.end=20 --set 'fish[*].nodes=13' --set 'fish[1].start.position=[0, -1]'
+shoal run pair.yaml --set time.end=20 --set 'fish[*].nodes=13' --set 'fish[upper].start.position=[0, -1]'
 ```
 
 ## sweep

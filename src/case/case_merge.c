@@ -226,6 +226,18 @@ static void put_at(struct arena *arena, struct yaml_node **node, const char *pat
     put_at(arena, &yaml_tree_entry(*node, key, length)->value, path + length + 1, mark, value);
 }
 
+// the names of the fish; a fish without a name has the one that it gets when its keys are read
+static const char *const *fish_names(const struct case_tree *tree) {
+    const struct yaml_node *const school = yaml_tree_find(tree->root, "fish");
+    const char **name;
+    NEW(tree->arena, name, case_merge_n_fish(tree));
+    for (int f = 0; f < case_merge_n_fish(tree); f++) {
+        const struct yaml_node *const own = yaml_tree_find(school->entry[f].value, "name");
+        name[f] = own && own->kind == YAML_SCALAR ? own->text : arena_text(tree->arena, "fish%d", f + 1);
+    }
+    return name;
+}
+
 void case_merge_assign(struct case_tree *tree, const char *assignment, struct yaml_errors *errors) {
     struct arena *const arena = tree->arena;
     char *const name = arena_text(arena, "%s", assignment), *const equals = strchr(name, '=');
@@ -240,7 +252,7 @@ void case_merge_assign(struct case_tree *tree, const char *assignment, struct ya
     // the key
     *equals = '\0';
     struct case_path path;
-    if (!case_path_parse(&path, name, case_merge_n_fish(tree), mark, errors)) return;
+    if (!case_path_parse(&path, name, case_merge_n_fish(tree), fish_names(tree), mark, errors)) return;
     const struct key *const key = case_table_row(path.pattern);
     if (key && key->type == FILES) {
         yaml_errors_add(errors, mark, "%s: is allowed in case files only", name);

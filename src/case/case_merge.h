@@ -51,9 +51,10 @@ struct case_path {
     const char *below; /* "wave.frequency": points into the text that was parsed */
 };
 
-/* Parse a path and check the existence of the key; false after adding an error. */
-bool case_path_parse(struct case_path *path, const char *text, int n_fish, struct yaml_mark mark,
-                     struct yaml_errors *errors);
+/* Parse a path and check the existence of the key; false after adding an error. name (n_fish): the names of the fish,
+ * by which a path may address them, as in fish[leader].wave.frequency. */
+bool case_path_parse(struct case_path *path, const char *text, int n_fish, const char *const *name,
+                     struct yaml_mark mark, struct yaml_errors *errors);
 
 /* Add the error "path: unknown key; did you mean 'modulus'?" for a word in a section of the table ("": the top;
  * "fish.body": the body of a fish). owner: the fish with the word, as named in messages ("fish[2]"), or NULL. */

@@ -158,9 +158,35 @@ void case_path_unknown(struct yaml_errors *errors, struct yaml_mark mark, const 
 
 // ---- paths
 
-/* Read "[2]" or "[*]" at text; returns the end of the index, or NULL after an error. */
-static const char *parse_index(struct case_path *path, const char *text, int n_fish, struct yaml_mark mark,
-                               struct yaml_errors *errors) {
+/* Find the fish of a name; CASE_NO_FISH after adding an error that suggests the nearest name. */
+static int fish_of_name(const char *text, size_t length, int n_fish, const char *const *name, struct yaml_mark mark,
+                        struct yaml_errors *errors) {
+    int nearest = 0, least = INT_MAX;
+    for (int f = 0; f < n_fish; f++) {
+        if (strlen(name[f]) == length && strncmp(text, name[f], length) == 0) return f;
+        const int distance = text_distance(text, length, name[f], strlen(name[f]));
+        if (distance < least) {
+            least = distance;
+            nearest = f;
+        }
+    }
+    const int shown = (int)(length < 40 ? length : 40);
+    if (n_fish > 0 && least <= (int)length / 3 + 1) {
+        yaml_errors_add(errors, mark, "fish[%.*s]: there is no fish of this name; did you mean fish[%.60s]?", shown,
+                        text, name[nearest]);
+    } else {
+        yaml_errors_add(errors, mark,
+                        "fish[%.*s]: there is no fish of this name; write the number of a fish, as in fish[0], its "
+                        "name, or fish[*] for every fish",
+                        shown, text);
+    }
+    return CASE_NO_FISH;
+}
+
+/* Read "[2]", "[leader]" or "[*]" at text; returns the end of the index, or NULL after an error. A name ends at the
+ * first ']'. */
+static const char *parse_index(struct case_path *path, const char *text, int n_fish, const char *const *name,
+                               struct yaml_mark mark, struct yaml_errors *errors) {
     const size_t length = strspn(text + 1, "0123456789");
     if (strncmp(text, "[*]", 3) == 0) {
         path->fish = CASE_EVERY_FISH;
@@ -168,9 +194,16 @@ static const char *parse_index(struct case_path *path, const char *text, int n_f
     }
 
     if (length == 0 || text[1 + length] != ']') {
-        yaml_errors_add(errors, mark,
-                        "fish%.20s: expects the number of a fish, as in fish[0], or fish[*] for every fish", text);
-        return NULL;
+        const char *const end = strchr(text, ']');
+        if (!end || end == text + 1) {
+            yaml_errors_add(errors, mark,
+                            "fish%.20s: expects the number or the name of a fish, as in fish[0], or fish[*] for every "
+                            "fish",
+                            text);
+            return NULL;
+        }
+        path->fish = fish_of_name(text + 1, (size_t)(end - text - 1), n_fish, name, mark, errors);
+        return path->fish == CASE_NO_FISH ? NULL : end + 1;
     }
 
     const long index = length < 9 ? strtol(text + 1, NULL, 10) : CASE_MAX_FISH;
@@ -208,8 +241,8 @@ static bool check_words(struct case_path *path, const char *words, const char *t
     }
 }
 
-bool case_path_parse(struct case_path *path, const char *text, int n_fish, struct yaml_mark mark,
-                     struct yaml_errors *errors) {
+bool case_path_parse(struct case_path *path, const char *text, int n_fish, const char *const *name,
+                     struct yaml_mark mark, struct yaml_errors *errors) {
     *path = (struct case_path){{0}, CASE_NO_FISH, text};
     if (strncmp(text, "fish.", 5) == 0) {
         const char *const words = text + 5;
@@ -235,7 +268,7 @@ bool case_path_parse(struct case_path *path, const char *text, int n_fish, struc
     if (strcmp(text, "defaults.fish") == 0) return true;
     if (strncmp(text, "fish[", 5) != 0) return check_words(path, text, text, NULL, mark, errors);
 
-    path->below = parse_index(path, text + 4, n_fish, mark, errors);
+    path->below = parse_index(path, text + 4, n_fish, name, mark, errors);
     if (!path->below) return false;
     if (*path->below == '\0') return true;
 

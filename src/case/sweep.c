@@ -114,6 +114,11 @@ static void axis_read_keys(struct axis *axis) {
     }
     if (list && single) yaml_errors_add(errors, single->mark, "%s: takes key or keys, not both", axis->name);
 
+    const struct school_parameters *const school = &axis->values->school;
+    const char **name;
+    NEW(axis->values->arena, name, school->n_fish);
+    for (int f = 0; f < school->n_fish; f++) name[f] = school->fish[f].name ? school->fish[f].name : "";
+
     axis->n_keys = list ? list->n : 1;
     NEW(axis->values->arena, axis->into->key, axis->n_keys);
     for (int n = 0; n < axis->n_keys; n++) {
@@ -126,7 +131,11 @@ static void axis_read_keys(struct axis *axis) {
         }
 
         struct case_path path;
-        if (!case_path_parse(&path, node->text, axis->values->school.n_fish, node->mark, errors)) continue;
+        if (!case_path_parse(&path, node->text, school->n_fish, name, node->mark, errors)) continue;
+        // a fish has one path in files, its number
+        const char *const written =
+            path.fish >= 0 ? arena_text(axis->values->arena, "fish[%d].%s", path.fish, path.below) : node->text;
+
         const struct key *const key = case_table_row(path.pattern);
         if (!key || !case_table_is_value(key) || strcmp(key->path, "format") == 0) {
             yaml_errors_add(errors, node->mark, "%s.key: '%.60s' cannot be swept", axis->name, node->text);
@@ -146,15 +155,15 @@ static void axis_read_keys(struct axis *axis) {
             const struct sweep_axis *const other = &axis->values->sweep[i];
             for (int k = 0; k < other->n_keys; k++) {
                 if (!other->key[k].path || strcmp(other->key[k].row, key->path) != 0) continue;
-                const bool is_of_all = path.fish == CASE_EVERY_FISH || axis->values->school.n_fish == 1;
-                if (!is_of_all && strcmp(other->key[k].path, node->text) != 0) continue;
+                const bool is_of_all = path.fish == CASE_EVERY_FISH || school->n_fish == 1;
+                if (!is_of_all && strcmp(other->key[k].path, written) != 0) continue;
                 yaml_errors_add(errors, node->mark, "%s.key: sweep[%d] has this key too", axis->name, i);
             }
         }
 
         axis->key[n] = key;
         axis->into->key[n] =
-            (struct sweep_key){.path = arena_text(axis->values->arena, "%s", node->text),
+            (struct sweep_key){.path = arena_text(axis->values->arena, "%s", written),
                                .row = key->path,
                                .unit = key->unit,
                                .is_number = key->type == REAL || key->type == INTEGER || key->type == DURATION};

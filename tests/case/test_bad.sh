@@ -178,7 +178,11 @@ set_fails set_nothing '--set : error: expects PATH=VALUE' ''
 set_fails set_no_path '--set =3: error: : unknown key; known keys: format, name' =3
 set_fails set_index_out_of_range 'fish[2]: there is no such fish; the case has 2, the last is fish[1]' 'fish[2].nodes=7'
 set_fails set_index_huge 'fish[99999999999999999999]: there is no such fish' 'fish[99999999999999999999999].nodes=7'
-set_fails set_index_negative 'fish[-1].nodes: expects the number of a fish' 'fish[-1].nodes=7'
+set_fails set_index_negative 'fish[-1]: there is no fish of this name; write the number of a fish' 'fish[-1].nodes=7'
+set_fails set_name_unknown 'fish[leadr]: there is no fish of this name; did you mean fish[leader]?' 'fish[1].name=leader' 'fish[leadr].nodes=7'
+set_fails set_name_empty 'fish[].nodes: expects the number or the name of a fish' 'fish[].nodes=7'
+set_fails sweep_key_of_a_name 'sweep[1].key: sweep[0] has this key too' 'fish[1].name=leader' \
+    'sweep=[{key: "fish[leader].wave.phase", values: [0, 90]}, {key: "fish[1].wave.phase", values: [0, 90]}]'
 set_fails set_index_missing 'fish.nodes: write fish[0].nodes for one fish, or fish[*].nodes for every fish' fish.nodes=7
 set_fails set_index_after_a_dot '--set fish.0.length=2: error: fish.0.length: write fish[0].length' fish.0.length=2
 set_fails set_index_for_a_key '--set fish.0=2: error: fish.0: write fish[0]' fish.0=2
@@ -189,7 +193,7 @@ set_fails set_in_one_other_section 'unknown key here; the key belongs to fish[0]
 set_fails set_viscosity "has no effect: all fish have 'drag.skin: quadratic' with the coefficient drag.tangential" 'fish[*].force=reactive' fluid.viscosity=1e-3
 set_fails set_reynolds 'the friction is set by drag.tangential of a fish, or by fluid.viscosity with' fluid.reynolds=1000
 set_fails set_a_letter_beside_mu 'fluid.u: unknown key; known keys: density' fluid.u=1
-for open in 0 '*'; do set_fails "set_index_open $open" 'expects the number of a fish, as in fish[0]' "fish[$open=7"; done
+for open in 0 '*'; do set_fails "set_index_open $open" 'expects the number or the name of a fish, as in fish[0]' "fish[$open=7"; done
 set_fails set_no_dot_after_index "fish[0]nodes: expects a '.' after the ']'" 'fish[0]nodes=7'
 set_fails set_below_a_value 'time.end.x: time.end is a value and has no keys' time.end.x=3
 set_fails set_mistyped '--set time.end=soon: error: time.end: expects a number in s, got '"'soon'" time.end=soon

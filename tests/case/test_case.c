@@ -423,6 +423,16 @@ TEST(a_star_assigns_to_every_fish) {
     for (int i = 0; i < 3; i++) NEAR(s.school.fish[i].body.modulus, 2e5 + i * 1e5, 0, 0);
 }
 
+TEST(a_name_assigns_to_its_fish) {
+    const char *const text = "format: 1\ntime: {end: 1}\nfish: [{name: leader}, {name: \"a: b.c\"}, {}]\n";
+    struct case_values s = parse_with(text, "fish[leader].nodes=9", "fish[a: b.c].nodes=11", "fish[fish3].nodes=13");
+    for (int f = 0; f < 3; f++) assert_int_equal(s.school.fish[f].nodes, 9 + 2 * f);
+    // the last name counts
+    s = parse_with(text, "fish[leader].name=first", "fish[first].nodes=7", "fish[2].nodes=15");
+    assert_int_equal(s.school.fish[0].nodes, 7);
+    assert_int_equal(s.school.fish[2].nodes, 15);
+}
+
 TEST(assignments_reach_defaults_preset_and_sections) {
     struct case_values s = parse_with(minimal, "defaults.fish.nodes=9", "preset=published", "sheet={kutta: edge}");
     assert_int_equal(s.school.fish->nodes, 9);
