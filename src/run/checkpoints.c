@@ -1,4 +1,4 @@
-/* checkpoints.c: plan and files of checkpoints. */
+/* checkpoints.c: the plan of the checkpoints, and writing them. */
 #include "run/checkpoints.h"
 
 #include <math.h>
@@ -18,7 +18,7 @@ char *checkpoints_path(struct arena *arena, const char *result) {
     const size_t length = strlen(result), n = strlen(".nc");
     const bool has_ending = length > n && strcmp(result + length - n, ".nc") == 0 && result[length - n - 1] != '/';
 
-    // the results "a" and "a.nc" have different checkpoints
+    // two names, so that the results "a" and "a.nc" do not share a checkpoint
     return arena_text(arena, "%.*s%s", (int)(has_ending ? length - n : length), result,
                       has_ending ? ".ckpt" : ".checkpoint");
 }
@@ -100,7 +100,7 @@ void checkpoints_end(const struct checkpoints *checkpoints) {
 
 // ---- writing
 
-// the places of further checkpoints with the present one
+// the places of further checkpoints, including the present one
 static const char *checkpoint_places(const struct checkpoints *checkpoints, const struct state *state) {
     if (checkpoint_is_regular(checkpoints, state->event) || state->event == checkpoints->last_place) {
         return checkpoints->places;
@@ -128,7 +128,7 @@ enum status checkpoints_write(struct checkpoints *checkpoints, const struct simu
     MEMORY_BOUNDARY(STATUS_MEMORY);
     const struct state *const state = simulation->state;
 
-    // the checkpoint of the wall time at this event lacks nothing but the note
+    // if the wall time has just written a checkpoint at this event, it lacks only the note
     const char *const places = checkpoint_places(checkpoints, state);
     if (places != checkpoints->places) {
         checkpoints->places = places;

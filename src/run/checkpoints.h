@@ -1,12 +1,12 @@
-/* checkpoints.h: times and files of the checkpoints of a run. The checkpoint of RESULT.nc is RESULT.ckpt, the
- * checkpoint of a RESULT without this ending is RESULT.checkpoint; the previous checkpoint has the ending .previous in
- * addition. Tested by tests/run/test_checkpoints.c and tests/run/test_resume.sh.
+/* checkpoints.h: when a run writes checkpoints, and into which files. The checkpoint of RESULT.nc is RESULT.ckpt; for a
+ * RESULT without this ending it is RESULT.checkpoint. The checkpoint before it has the ending .previous in addition.
+ * Tested by tests/run/test_checkpoints.c and tests/run/test_resume.sh.
  *
- * A checkpoint is planned, by time.checkpoint_interval and --checkpoint-at, or is written because the run is stopped,
- * or because time.checkpoint_wall has passed. Every run renews the simulation (simulate_renew) at each planned
- * checkpoint before its end, resumed or not, so a resumed run has the bits of the uninterrupted run. At the others
- * only a resumed run begins anew: its attribute checkpoint_at names the place, and a run with this --checkpoint-at
- * has the same bits. The wall time therefore never changes a bit of a run that is not interrupted. */
+ * A checkpoint is either planned, by time.checkpoint_interval or --checkpoint-at, or it is written because the run is
+ * stopped or because time.checkpoint_wall has passed. At a planned checkpoint every run renews the simulation
+ * (simulate_renew), whether it is resumed there or not, so a resumed run has the bits of the uninterrupted one. At the
+ * others only a resumed run begins anew. Its attribute checkpoint_at then names the place, and a run with this
+ * --checkpoint-at has the same bits. In this way the wall time never changes a bit of a run that is not interrupted. */
 #ifndef CHECKPOINTS_H
 #define CHECKPOINTS_H
 
@@ -22,7 +22,7 @@
 struct checkpoints {
     struct arena *arena;
     char *path, *previous;
-    char *word;            /* the path for a command line */
+    char *word;            /* the path as a word of a command line */
     const char *result;    /* name of the result file, in the same folder */
     const char *effective; /* the complete case */
     long interval;         /* in events; 0: none */
@@ -32,8 +32,8 @@ struct checkpoints {
     long last_place;    /* event of the last further checkpoint; -1: none yet */
     long last;          /* event of the last checkpoint; -1: none yet */
     double wall;        /* wall time between two checkpoints, s; 0: none */
-    double written;     /* monotonic time of the last checkpoint, or of the start of the run, s */
-    bool is_by_wall;    /* the last checkpoint was written because its wall time had come */
+    double written;     /* clock (monotonic) at the last checkpoint, or at the start of the run, s */
+    bool is_by_wall;    /* the last checkpoint was written because time.checkpoint_wall had passed */
 };
 
 /* The ending of the previous checkpoint, and the path of the checkpoint of a result. */
@@ -41,34 +41,35 @@ struct checkpoints {
 char *checkpoints_path(struct arena *arena, const char *result);
 
 /* Plan the checkpoints of a run with this result; the plan is a part of the arena. at: times of further checkpoints, s,
- * separated by commas; may be NULL. Fails with STATUS_CASE (a time in at is not the time of an event) or STATUS_FILE (a
- * file that is not a checkpoint of this result has the name). */
+ * separated by commas; may be NULL. Fails with STATUS_CASE if a time in at is not the time of an event, and with
+ * STATUS_FILE if the name of the checkpoint belongs to a file that is not a checkpoint of this result. */
 enum status checkpoints_create(struct arena *arena, struct checkpoints *checkpoints, const struct case_values *values,
                                const char *result, const char *at);
 
 /* Continue the plan of a run that is resumed at an event. with_other_end: the result is written again for another end;
- * else the checkpoints keep the case of the resumed checkpoint, regardless of the number of threads now. */
+ * otherwise the checkpoints keep the case of the one resumed from, whatever the number of threads is now. */
 void checkpoints_resume(struct checkpoints *checkpoints, const struct checkpoint *from, long event,
                         bool with_other_end);
 
 /* Remove the files of an earlier run. */
 void checkpoints_remove(const struct checkpoints *checkpoints);
 
-/* Whether a checkpoint is planned at this event; whether the wall time of a further one has come. */
+/* Whether a checkpoint is planned at this event, and whether time.checkpoint_wall has passed since the last one. */
 bool checkpoints_are_due(const struct checkpoints *checkpoints, long event);
 bool checkpoints_are_due_by_wall(const struct checkpoints *checkpoints);
 
-/* Write a checkpoint at the event of the simulation, after the rows of the record are safe on disk; no-op if the event
- * has a checkpoint. Fails with STATUS_FILE or, as a boundary, with STATUS_MEMORY. */
+/* Write a checkpoint at the event of the simulation, after the rows of the record are safe on disk. Does nothing if the
+ * event already has one. Fails with STATUS_FILE or, as a boundary, with STATUS_MEMORY. */
 enum status checkpoints_write(struct checkpoints *checkpoints, const struct simulation *simulation,
                               const struct record *record);
 
-/* The same for a checkpoint whose wall time has come: the place is noted in the checkpoint, and not in the result. */
+/* The same for a checkpoint that is due by the wall time. Its place is noted in the checkpoint but not in the
+ * result. */
 enum status checkpoints_write_by_wall(struct checkpoints *checkpoints, const struct simulation *simulation,
                                       const struct record *record);
 
-/* The run has reached its end, and its result is complete: remove the checkpoints of its wall time, unless others were
- * planned. */
+/* Call this when the run has reached its end and its result is complete: checkpoints that were written for the wall
+ * time alone are no longer needed and are removed. */
 void checkpoints_end(const struct checkpoints *checkpoints);
 
 #endif

@@ -1,4 +1,4 @@
-/* estimate.c: cost of the first events and of events with synthetic wakes; extrapolation to the whole run. */
+/* estimate.c: measures the first events of a run and events with synthetic wakes, and extrapolates to the whole run. */
 #include <math.h>
 #include <sys/resource.h>
 
@@ -6,40 +6,39 @@
 #include "run/simulate.h"
 #include "wake/stretch.h"
 
-/* A synthetic wake drifts away from the tail by `drift` body lengths per beat; the lateral amplitude is `width` body
- * lengths. */
+/* The shape of a synthetic wake: it leaves the tail by `drift` body lengths per beat and swings to both sides by
+ * `width` body lengths. */
 static const double drift = 0.5, width = 0.1;
 
-/* Memory of NetCDF, and of the copy of a small state at the last event [bytes]. */
+/* Memory of NetCDF, and of the copy of a small state at the last event, bytes. */
 static const double bytes_of_file = 7e6;
 
-/* Residual evaluations per event, for an estimate without a completed event: doc/numerics.md, section 4. */
+/* Residual evaluations per event, used while no event has been completed: doc/numerics.md, section 4. */
 static const double usual_evaluations = 12;
 
-/* Memory per vortex [bytes], for synthetic wakes too short for a measurement: 200,000 vortices take 370 MB, because
- * arrays that grow leave their old pieces to the arena. */
+/* Memory per vortex, bytes, used if the synthetic wakes are too short to measure it. 200,000 vortices take 370 MB,
+ * because arrays that grow leave their old pieces to the arena. */
 static const double usual_bytes = 1900;
 
-/* Vortices per fish in the first synthetic wake, which doubles from wake to wake; maximum number of wakes. */
+/* Vortices per fish in the first synthetic wake, which doubles from wake to wake, and the largest number of wakes. */
 enum { FIRST_WAKE = 64, MAX_WAKES = 24 };
 
-/* Costs of an event against the number of vortices per fish that were released, of which some are dropped. Entry 0 is
- * the cost with the actual wakes. Beyond the last entry, the added time grows as n^2 to the number of vortices from
- * which the tree sums, then as n log n; memory grows linearly. */
+/* What an event costs with a given number of vortices per fish; released vortices are counted, of which some have been
+ * dropped. Entry 0 is the cost with the actual wakes. Beyond the last entry the added time is taken to grow as n^2 up
+ * to the number of vortices from which the tree sums, and as n log n from there; memory grows linearly. */
 struct costs {
     int n;
     double vortices[MAX_WAKES + 1], seconds[MAX_WAKES + 1], bytes[MAX_WAKES + 1], by_tree;
-    double stays; /* the part of the vortices of the last entry that was not dropped */
+    double stays; /* the fraction of the vortices of the last entry that was not dropped */
 };
 
-// peak memory of the program so far
 static double bytes_so_far(void) {
     struct rusage usage;
     getrusage(RUSAGE_SELF, &usage);
     return 1024.0 * (double)usage.ru_maxrss;
 }
 
-// cost of one event and of a number of residual evaluations with the present wakes
+// the cost of one event plus a number of residual evaluations with the present wakes
 static enum status event_cost(struct simulation *simulation, double evaluations, double *seconds) {
     struct state *const state = simulation->state;
     struct residual *const residual = simulation->residual;
@@ -55,7 +54,7 @@ static enum status event_cost(struct simulation *simulation, double evaluations,
     return STATUS_OK;
 }
 
-// the first events of the run; what one costs, and how often it evaluates the equations
+// Run the first events, and find what one costs and how often it evaluates the equations.
 static enum status measure_first_events(struct simulation *simulation, double patience, struct estimate *estimate,
                                         double *seconds, double *evaluations) {
     const double start = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
@@ -84,15 +83,15 @@ static enum status measure_first_events(struct simulation *simulation, double pa
         return STATUS_OK;
     }
 
-    // the first event costs more than the following events
+    // leave out the first event, which costs more than the others
     *seconds = n > 1 ? (spent - first) / (double)(n - 1) : first;
     const long rest = simulation->totals.residual_evaluations - (n > 1 ? after_first.residual_evaluations : 0);
     *evaluations = (double)rest / (double)(n > 1 ? n - 1 : 1);
     return STATUS_OK;
 }
 
-// Measure events with synthetic wakes of doubling length while time remains for the next wake: doubling the number of
-// vortices raises the cost up to fourfold.
+// Measure events with synthetic wakes of doubling length for as long as there is time for the next one; doubling the
+// number of vortices raises the cost at most fourfold.
 static enum status measure_synthetic_wakes(struct simulation *simulation, double end, double evaluations,
                                            struct costs *costs) {
     const struct school *const school = simulation->school;
@@ -111,7 +110,7 @@ static enum status measure_synthetic_wakes(struct simulation *simulation, double
         if (!(left > 4 * costs->seconds[costs->n - 1])) break;
         n = (int)fmin(most, fmax(FIRST_WAKE, 2.0 * n));
 
-        // replace the wakes by synthetic wakes of n vortices, the newest vortex at the tail
+        // replace the wakes by synthetic ones of n vortices, the newest at the tail
         for (int f = 0; f < school->n_fish; f++) {
             const struct fish *const fish = &school->fish[f];
             struct wake *const wake = &state->wake[f];
@@ -132,7 +131,7 @@ static enum status measure_synthetic_wakes(struct simulation *simulation, double
                 wake->birth[i] = state->t - age;
             }
 
-            // as in a run, where markers are dropped at every event
+            // drop markers until none is left to drop, as a run does event by event
             wake->n_old = 0;
             stretch_find_old(wake, fish, school);
             for (int before = -1; before != wake->n_vortex;) {
@@ -150,7 +149,7 @@ static enum status measure_synthetic_wakes(struct simulation *simulation, double
     return STATUS_OK;
 }
 
-// added cost of an event with so many vortices per fish, relative to entry 0
+// what an event with so many vortices per fish costs more than entry 0
 static double event_added_cost(const struct costs *costs, double vortices) {
     int i = 0;
     while (i < costs->n - 1 && vortices > costs->vortices[i + 1]) i++;
@@ -169,8 +168,8 @@ enum status estimate_run(struct simulation *simulation, double patience, struct 
     struct costs costs = {.n = 1, .vortices = {1}, .stays = 1};
     TRY(measure_first_events(simulation, patience / 2, estimate, &each, &evaluations));
 
-    // a run that has ended has its longest wakes. A synthetic wake does not match the body: a solver failure with this
-    // wake predicts no failure of the run
+    // A run that has ended already has its longest wakes. A synthetic wake does not fit the body, so a failure of the
+    // solver with it predicts no failure of the run.
     const double most = wake_most(simulation->school, simulation->n_events);
     if (estimate->n_events == simulation->n_events) {
         costs.vortices[0] = most;
@@ -178,20 +177,20 @@ enum status estimate_run(struct simulation *simulation, double patience, struct 
         return STATUS_MEMORY;
     }
 
-    // the number of vortices from which the tree is faster: tree_is_faster
+    // from so many vortices on, the tree is faster (tree_is_faster)
     const struct school *const school = simulation->school;
     const struct kernel *const kernel = simulation->residual->flow->kernel;
     costs.by_tree = school->wake_tolerance > 0 ? fmax(kernel->tree_sources, sqrt(kernel->tree_interactions)) : INFINITY;
     costs.by_tree /= school->n_fish * costs.stays;
 
-    // sum over all events: panels of many events while the wakes grow, then events with constant wakes
+    // sum over all events: in panels while the wakes grow, then with wakes of constant length
     enum { PANELS = 2000 };
     const double n_events = (double)simulation->n_events, growing = fmin(most, n_events);
     double sum = 0;
     for (int i = 0; i < PANELS; i++) sum += event_added_cost(&costs, (i + 0.5) * growing / PANELS) * growing / PANELS;
     estimate->seconds = n_events * each + sum + (n_events - growing) * event_added_cost(&costs, most);
 
-    // memory with the longest wakes: the last doubling of the wakes measures the memory per vortex
+    // memory with the longest wakes; what one vortex needs is measured by the last doubling
     const int last = costs.n - 1, n_fish = school->n_fish, enough = 20000;
     const double more = last > 0 ? (costs.vortices[last] - costs.vortices[last - 1]) * n_fish : 0;
     const double bytes_each =

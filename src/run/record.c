@@ -1,4 +1,4 @@
-/* record.c: rows that are due, and the final status of a result file. */
+/* record.c: which rows are due, and how a result file ends. */
 #include "run/record.h"
 
 #include <math.h>
@@ -28,7 +28,7 @@ enum status record_create(struct arena *arena, struct record *record, const stru
 bool record_is_due(const struct record *record, long event) {
     if (!record->file) return false;
 
-    // the end is a row even if the end is not a multiple of the output interval
+    // the end is a row even if it is not a multiple of the output interval
     return (event - record->first) % record->events_per_row == 0 || event == record->n_events;
 }
 
@@ -40,7 +40,7 @@ enum status record_row(const struct record *record, struct result_row *row) {
 }
 
 enum status record_close(struct record *record, enum status status) {
-    // closing the file can overwrite the message, which is the reason of a failure
+    // closing the file may overwrite the message, which is the reason of the failure
     char reason[4096];
     snprintf(reason, sizeof reason, "%s", status_message());
 

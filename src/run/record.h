@@ -1,5 +1,5 @@
-/* record.h: result file during a run: the events that are rows, and the status at the end. Tested by
- * tests/run/test_simulate.c and tests/library/test_shoal.c. */
+/* record.h: the result file while a run goes on: which events become rows, and which status the file has at the end.
+ * Tested by tests/run/test_simulate.c and tests/library/test_shoal.c. */
 #ifndef RECORD_H
 #define RECORD_H
 
@@ -11,7 +11,7 @@
 #include "result/result_file.h"
 #include "run/simulate.h"
 
-/* A zeroed record has no file. */
+/* The record of a run. All zero: there is no file. */
 struct record {
     struct result_file *file;
     const char *path;
@@ -19,28 +19,29 @@ struct record {
     long first, n_events; /* the events of the first row and of the end */
 };
 
-/* Path of the result of a case: output.file, or the name of the case with .nc. */
+/* The path of the result of a case: output.file, or the name of the case with .nc. */
 char *record_path(struct arena *arena, const struct case_values *values);
 
-/* Create the file of an origin, without a row (result_file_create), or continue it behind the mark of the origin; the
- * record refers to the path until record_close. origin->effective is not used. A boundary: fails with STATUS_FILE or
- * STATUS_MEMORY; no new file remains then. */
+/* Create the file of an origin, without rows (result_file_create), or continue it behind the mark of the origin. The
+ * record refers to the path until record_close; origin->effective is not used. A boundary: fails with STATUS_FILE or
+ * STATUS_MEMORY, and then leaves no new file. */
 enum status record_create(struct arena *arena, struct record *record, const struct result_origin *origin);
 
-/* Whether an event is a row: every output interval, and the end. A record without a file has no rows. */
+/* Whether an event becomes a row: one in every output interval does, and so does the end. A record without a file has
+ * no rows. */
 bool record_is_due(const struct record *record, long event);
 
-/* Append a row; rows at multiples of output.wake_interval and the last row contain the wake. Fails with STATUS_FILE,
- * or, for a run that has diverged (warnings_refuse), with STATUS_SOLVER. */
+/* Append a row. Rows at multiples of output.wake_interval contain the wake, and so does the last row. Fails with
+ * STATUS_FILE, or with STATUS_SOLVER if the run has diverged (warnings_refuse). */
 enum status record_row(const struct record *record, struct result_row *row);
 
-/* Close the file with the status of the run: STATUS_OK "complete", STATUS_STOPPED "stopped", else "failed: " and the
- * message. Returns the given status with the given message; if the given status is STATUS_OK, fails with STATUS_FILE
- * when closing fails. */
+/* Close the file and give it the status of the run: "complete" for STATUS_OK, "stopped" for STATUS_STOPPED, else
+ * "failed: " and the message. Returns the given status with the given message; only if that is STATUS_OK can it fail
+ * with STATUS_FILE, because closing failed. */
 enum status record_close(struct record *record, enum status status);
 
-/* Write warnings into the file: lines about a state that was found, which may be "", and those about the last row; then
- * the closest approach of two bodies. Call warn, which may be NULL, for each warning about the row with data. */
+/* Write the warnings into the file: lines about a state that was found (may be ""), lines about the last row, and the
+ * closest approach of two bodies. warn is called with data for each warning about the row; it may be NULL. */
 void record_notes_write(struct result_file *file, const struct simulation *simulation, const char *found,
                         void (*warn)(const char *line, void *data), void *data);
 

@@ -1,4 +1,4 @@
-/* simulate.c: creation of a simulation from a case or from a state, and the step from event to event. */
+/* simulate.c: creates a simulation from a case or from a state, and takes it from one event to the next. */
 #include "run/simulate.h"
 
 #include <math.h>
@@ -36,7 +36,6 @@ static void simulation_set_order(struct simulation *simulation, const struct cas
     simulation->options.order = simulate_order(simulation->arena, values, simulation->school);
 }
 
-// an empty simulation of a case
 static struct simulation *simulation_begin(struct arena *parent, const struct case_values *values) {
     struct arena *const arena = arena_create(parent, "a simulation");
     struct simulation *created;
@@ -53,7 +52,7 @@ static struct simulation *simulation_begin(struct arena *parent, const struct ca
     return created;
 }
 
-/* Create the equations and their initial conditions; stop in between when *stop is not 0. */
+/* Create the equations and their initial conditions; give up in between once *stop is not 0. */
 static enum status simulation_create_equations(struct simulation *simulation, const volatile sig_atomic_t *stop) {
     arena_free(simulation->renewed);
     simulation->renewed = NULL;
@@ -112,9 +111,9 @@ void simulate_free(struct simulation *simulation) {
     if (simulation) arena_free(simulation->arena);
 }
 
-/* Complete the message of a failure: name a body that is folded at a joint at the end of the last step, which the curve
- * through the nodes does not describe, and the two bodies, or the body and the wall, with the least gap below
- * contact.range. */
+/* Complete the message of a failure with what the bodies look like at the end of the last step. Name a body that is
+ * folded at a joint, because the curve through its nodes describes no such body, and the two bodies, or the body and
+ * the wall, that are closest to each other if their gap is below contact.range. */
 static enum status simulation_explain(const struct simulation *simulation, enum status status) {
     const double sharp = M_PI / 4;
     const struct school *const school = simulation->school;
@@ -160,7 +159,8 @@ static enum status simulation_explain(const struct simulation *simulation, enum 
                        status_message(), name, which, school->walls.y[wall], least);
 }
 
-/* After a step: balances and closest approach, then who watches the simulation. data: struct simulation. */
+/* What follows each step: balances and the closest approach, then whoever watches the simulation. data: struct
+ * simulation. */
 static void simulation_after_step(void *data, double t) {
     struct simulation *const simulation = data;
     diagnostics_step(simulation->residual, simulation->state, t, simulation->state->y);
@@ -179,11 +179,11 @@ enum status simulate_step(struct simulation *simulation) {
     const struct integrator *const integrator = simulation->integrator;
     struct state *const state = simulation->state;
 
-    // integrate to the next event; the equations may be new
+    // the equations may have been renewed since the last event
     simulation->residual->stop = simulation->stop;
     enum status status = simulate_interval(simulation, fish_event_time(school, state->event + 1));
 
-    // contact.action: stop takes precedence over the status of the integrator
+    // a contact with contact.action: stop ends the run, whatever the integrator says
     const struct closest *const closest = state->closest;
     if (school->contact == CONTACT_STOP && !(closest->distance >= school->contact_range)) {
         return status_fail(STATUS_CONTACT,
@@ -193,7 +193,7 @@ enum status simulate_step(struct simulation *simulation) {
                            closest->distance, school->contact_range);
     }
 
-    // perform the event; count before the restart, which discards the last step
+    // perform the event, and count before a restart, which discards the last step
     if (status == STATUS_OK) {
         int jumped = 0;
         status = event_next(state, simulation->residual, simulation->consistent, &jumped);

@@ -22,7 +22,7 @@
 #include "run/simulate.h"
 #include "state/state.h"
 
-// a run with result and checkpoints
+// a run together with its result and its checkpoints
 struct run {
     struct arena *arena;
     const struct case_values *values;
@@ -30,8 +30,9 @@ struct run {
     struct simulation *simulation;
     struct record record;
     struct checkpoints checkpoints;
-    long n_steps;         /* since the last event */
-    struct state *before; /* state at the last event, if the run can be stopped between events */
+    long n_steps; /* since the last event, to report progress */
+    /* the state at the last event, to return to it when the run is stopped; NULL if it cannot be stopped */
+    struct state *before;
 };
 
 // ---- from event to event
@@ -73,7 +74,7 @@ static void run_report(const struct run *run, double t) {
     run->options->progress(&progress, run->options->data);
 }
 
-/* With many steps an event can take minutes. data: struct run. */
+/* Report between events too, because with many steps an event can take minutes. data: struct run. */
 static void run_report_step(double t, void *data) {
     struct run *const run = data;
     if (++run->n_steps % 100 == 0) run_report(run, t);
@@ -94,7 +95,7 @@ static enum status run_loop(struct run *run) {
     while (simulation->state->event < simulation->n_events) {
         run->n_steps = 0;
 
-        // advance to the next event, or stop at the last event, with a checkpoint of the state there
+        // advance to the next event; a stop falls back to the last one, where a checkpoint is written
         if (run->before) state_table_copy(run->before, simulation->state, simulation->school, false);
         const enum status status = options->stop && *options->stop ? STATUS_STOPPED : simulate_step(simulation);
         if (status == STATUS_STOPPED) {
@@ -114,11 +115,10 @@ static enum status run_loop(struct run *run) {
     return STATUS_OK;
 }
 
-/* Run to the end and close the record. */
 static enum status run_finish(struct run *run, enum status status) {
     if (status == STATUS_OK) status = run_loop(run);
 
-    // no notes for a run that was stopped or could not be renewed
+    // a run that was stopped is not judged, and one that could not be renewed has nothing to judge
     if (status != STATUS_STOPPED && run->simulation->residual) {
         record_notes_write(run->record.file, run->simulation, "", run->options->warn, run->options->data);
     }
@@ -140,7 +140,7 @@ bool simulate_can_resume(struct arena *arena, const char *result, const char *ch
         bool is_complete;
         if (checkpoint_read(scratch, &read, paths[i]) != STATUS_OK) continue;
 
-        // the rows tell the run: their wall times differ from run to run
+        // the rows identify the run, because they contain its wall times
         *t = read.t;
         is_possible = checkpoint_check_program(&read) == STATUS_OK &&
                       result_mark_check(scratch, result, &read.rows, effective, &checksum, &is_complete) == STATUS_OK &&
@@ -182,7 +182,7 @@ static enum status run_start(struct run *run) {
                                          .n_events = run->simulation->n_events};
     TRY(record_create(run->arena, &run->record, &origin));
 
-    // an earlier result stays in place until the first row of the new result is safe
+    // an earlier result stays in its place until the first row of the new one is safe
     enum status status = run_write_if_due(run);
     if (status == STATUS_OK) status = result_file_publish(run->record.file, "running");
     if (status == STATUS_OK) {
@@ -214,7 +214,7 @@ struct resume {
     struct durable_claim claim;
     struct result_checksum checksum; /* of the rows of the result */
     bool is_complete;                /* the run of the result has reached the end */
-    char *note;                      /* reason for not using the newest checkpoint; NULL: used */
+    char *note;                      /* why the newest checkpoint is not used; NULL: it is */
 };
 
 static enum status resume_try(struct resume *resume, const char *path) {
@@ -237,7 +237,7 @@ static enum status resume_try(struct resume *resume, const char *path) {
                              &resume->is_complete);
 }
 
-/* Say why a result without checkpoint cannot be resumed, and what to do. Fails with STATUS_FILE. */
+/* Say why a result without a checkpoint cannot be resumed, and what to do instead. Fails with STATUS_FILE. */
 static enum status resume_refuse(struct arena *arena, const char *result, const char *checkpoint) {
     struct netcdf_reader *reader;
     char *run_status, *history;
@@ -261,7 +261,7 @@ static enum status resume_refuse(struct arena *arena, const char *result, const 
                        result, t, checkpoint, command ? command + 1 : history);
 }
 
-/* The checkpoint at path, or that of the result at path. */
+/* Find the checkpoint: path is either one or the result of one. */
 static enum status resume_find(struct arena *arena, const char *path, const char **checkpoint) {
     *checkpoint = path;
     if (!target_is(path, TARGET_NETCDF)) return STATUS_OK;
@@ -271,15 +271,14 @@ static enum status resume_find(struct arena *arena, const char *path, const char
     return resume_refuse(arena, path, *checkpoint);
 }
 
-/* Open the checkpoint at path or, if this checkpoint cannot be used, the previous checkpoint, and claim the result.
- * Fails with STATUS_FILE and the reason. */
+/* Open the checkpoint at path or, if it cannot be used, the previous one, and claim the result. Fails with STATUS_FILE
+ * and the reason. */
 static enum status resume_open(struct resume *resume, const char *path) {
     struct arena *const arena = resume->run.arena;
     const enum status status = resume_try(resume, path);
     if (status != STATUS_FILE) return status;
     const char *const reason = arena_text(arena, "%s", status_message());
 
-    // fall back to the previous checkpoint
     const char *const previous = arena_text(arena, "%s" CHECKPOINTS_PREVIOUS, path);
     if (access(previous, F_OK) != 0 || resume_try(resume, previous) != STATUS_OK) {
         return status_fail(STATUS_FILE, "%s", reason);
@@ -288,8 +287,8 @@ static enum status resume_open(struct resume *resume, const char *path) {
     return STATUS_OK;
 }
 
-/* Read the case of the checkpoint with assignments, as case_read does. The values include the text of the case file and
- * the study of the result. Fails with STATUS_CASE or STATUS_FILE. */
+/* Read the case of the checkpoint with assignments, as case_read does. The text of the case file and the study come
+ * from the result. Fails with STATUS_CASE or STATUS_FILE. */
 static enum status resume_case(struct resume *resume, const struct simulate_changes *changes) {
     struct case_values *const values = &resume->values;
     const char *const text = resume->checkpoint.effective;
@@ -297,7 +296,7 @@ static enum status resume_case(struct resume *resume, const struct simulate_chan
                    changes->assignments));
     resume->run.values = values;
 
-    // the complete case of the checkpoint contains neither text nor study
+    // the case in the checkpoint is complete, but has neither the user's text nor the study
     struct arena *const scratch = arena_create(resume->run.arena, resume->result);
     struct netcdf_reader *reader;
     char *of_file, *study;
@@ -307,14 +306,13 @@ static enum status resume_case(struct resume *resume, const struct simulate_chan
     TRY(netcdf_attribute(reader, "study_case", &study));
     TRY(netcdf_read_integer(reader, "study_member", 0, &values->member));
 
-    // a run outside a study has an empty text
+    // a run outside a study has an empty text here
     values->text = arena_text(values->arena, "%s", of_file);
     values->study = *study ? arena_text(values->arena, "%s", study) : NULL;
     arena_free(scratch);
     return STATUS_OK;
 }
 
-/* Create the simulation from the state of the checkpoint. */
 static enum status resume_take_up(struct resume *resume) {
     struct run *const run = &resume->run;
     struct school *school = NULL;
@@ -331,7 +329,7 @@ static enum status resume_take_up(struct resume *resume) {
     return STATUS_OK;
 }
 
-/* Write the result with another end: without the final row if it was written only because it was final. */
+/* Write the result again for another end. Its final row is left out if it was a row only because it was final. */
 static enum status resume_extend(struct resume *resume, struct result_origin *origin) {
     struct run *const run = &resume->run;
     const struct simulation *const simulation = run->simulation;
@@ -344,7 +342,7 @@ static enum status resume_extend(struct resume *resume, struct result_origin *or
     origin->source = &source;
     TRY(record_create(run->arena, &run->record, origin));
 
-    // in this order one of the last two checkpoints always matches the result
+    // in this order one of the last two checkpoints matches the result at any moment
     TRY(checkpoints_write(&run->checkpoints, simulation, &run->record));
     return result_file_publish(run->record.file, "running");
 }
@@ -358,7 +356,7 @@ static enum status resume_start(struct resume *resume, const char *path, const s
     TRY(resume_find(run->arena, path, &checkpoint));
     TRY(resume_open(resume, checkpoint));
 
-    // tell the user what the result has, of a damaged checkpoint, and of another processor
+    // tell the user where the run continues, that a checkpoint is damaged, and that the processor is another one
     char here[VERSION_LENGTH], line[4 * VERSION_LENGTH + PATH_MAX];
     version_processor(here);
     if (options->note && checkpoint != path) {
@@ -389,10 +387,10 @@ static enum status resume_start(struct resume *resume, const char *path, const s
                            simulation->state->t);
     }
 
-    // replace a newest checkpoint that cannot be used; after a failed rename, a later resume refuses it again
+    // Replace a newest checkpoint that cannot be used. Should the rename fail, a later resume refuses it again.
     if (resume->note) rename(run->checkpoints.previous, run->checkpoints.path);
 
-    // the existing result, without the rows after the checkpoint
+    // continue the result without the rows after the checkpoint
     struct result_origin origin = {.path = resume->result,
                                    .values = run->values,
                                    .command = options->command,
@@ -405,7 +403,7 @@ static enum status resume_start(struct resume *resume, const char *path, const s
     const enum status status =
         changes->has_other_end ? resume_extend(resume, &origin) : record_create(run->arena, &run->record, &origin);
 
-    // the simulation begins anew here
+    // the resumed run begins anew here, so the result has to name this place
     if (run->record.file) result_file_note(run->record.file, RESULT_CHECKPOINT_AT, resume->checkpoint.places);
     return run->record.file ? run_finish(run, status) : status;
 }
