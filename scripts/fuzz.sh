@@ -2,12 +2,23 @@
 # Fuzz for a time, all targets at once, with the sanitizers; libFuzzer where clang is there, else the driver of
 # tests/fuzz with one seed after the other. Stops at the first bad input and keeps the input.
 #
-#   scripts/fuzz.sh BUILD SECONDS
+#   scripts/fuzz.sh SECONDS
 set -euo pipefail
-build=$(realpath "$1") seconds=$2
+seconds=$1
+cd "$(dirname "$0")/.."
+if [[ $(command -v clang) ]]; then
+    # all for libFuzzer, whose main replaces that of the driver
+    build=build-fuzzer
+    settings=(CC=clang B=$build fuzz_driver= fuzz_flags=-fsanitize=fuzzer "sanitize=-fsanitize=address,undefined,fuzzer-no-link
+        -fno-sanitize-recover=all -fno-omit-frame-pointer -fno-sanitize=pointer-overflow")
+else
+    build=build-sanitize settings=()
+fi
+make --no-print-directory -j"$(nproc)" SANITIZE=1 "${settings[@]//$'\n'/ }" fuzz-programs
+build=$(realpath "$build")
 folder=$build/fuzz/run
 mkdir -p "$folder"
-"$(dirname "$0")/../tests/fuzz/seeds.sh" "$build/shoal" "$folder/seeds"
+tests/fuzz/seeds.sh "$build/shoal" "$folder/seeds"
 
 # One target until the time is over; prints the number of inputs.
 fuzz() {  # target, seeds

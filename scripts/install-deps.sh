@@ -1,14 +1,29 @@
 #!/usr/bin/env bash
 # Install the Debian packages that building, testing and the scripts need: only those that are missing, without questions.
 # Says and changes nothing when all are there. Needs root, or sudo without a password.
+#
+#   scripts/install-deps.sh [PACKAGE|@SET]...      additional packages, or one of the sets below
 set -euo pipefail
+
+declare -rA sets=(
+    [@extra]='chromium python3-vtk9 python3-jsonschema python3-yaml groff mandoc man-db bsdextrautils
+        python3-pip python3-venv python3-setuptools python3-wheel'  # make test-extra
+    [@site]='python3-sphinx python3-myst-parser furo doxygen python3-breathe jupyter-nbconvert python3-ipykernel'
+    [@slurm]='slurm-wlm munge'
+    [@deb]='build-essential debhelper dh-python lintian'
+)
+more=()
+for word in "$@"; do
+    # shellcheck disable=SC2206  # a set has several words
+    more+=(${sets[$word]-$word})
+done
 
 readonly packages=(
     gcc g++ make libc6-dev pkg-config
     libsundials-dev libsuitesparse-dev liblapacke-dev liblapack-dev libblas-dev libnetcdf-dev libyaml-dev zlib1g-dev
     libcmocka-dev netcdf-bin clang-format  # tests and style
     python3 python3-numpy python3-scipy python3-matplotlib python3-netcdf4 python3-xarray ffmpeg  # pictures and movies
-    "$@"                                   # additional packages of a target
+    "${more[@]}"
 )
 
 if ! command -v dpkg-query >/dev/null; then
