@@ -107,6 +107,9 @@ sweep:
 The members are numbered from 0, the last axis fastest. With `keys` several keys change together. With `steady: true` on
 one axis every member is a steady state ([steady.md](steady.md#studies-of-steady-states)).
 
+With `relative_to: first` on one axis, or another value of its (first) key, the study also states all results over those
+at this value: a second table, and `ratio_...` in `study.nc`.
+
 With `refine: true` on an axis the study prints orders of convergence ([studies.md](studies.md#convergence)). The first
 key of such an axis is numerical (`nodes`, `sheet_points`, `time.shedding_interval`, `solver.rtol`, `solver.step`,
 `wake.tolerance`, `wake.lifetime`) or a length of the model (`wake.smoothing`, `sheet.smoothing`,

@@ -23,7 +23,7 @@ def section(properties):
 
 
 AXIS = section({"key": STRING, "keys": {**LIST, "items": STRING}, "values": {**LIST, "minItems": 1}, "refine": BOOLEAN,
-                "steady": BOOLEAN, "expect": OBJECT, "reference": OBJECT}) | {"required": ["values"]}
+                "steady": BOOLEAN, "expect": OBJECT, "reference": OBJECT, "relative_to": {}}) | {"required": ["values"]}
 FISH = {"$ref": "#/definitions/fish"}
 NESTED = {
     "list of files": ONE_OR_MORE,

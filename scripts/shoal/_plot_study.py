@@ -11,7 +11,8 @@
     two axes of numbers             a map over both: cells with their values, contours where there are many
     anything else                   speed, cost of transport and Strouhal number over the first axis; of fish that are held
                                     thrust, power and efficiency; of bodies that a heave drives the efficiency in place of the
-                                    Strouhal number; of bodies without a beat drag, lift and deflection
+                                    Strouhal number; of bodies without a beat drag, lift and deflection; with
+                                    relative_to the same over the reference beside it
     a comparison of methods         error against wall time and evaluations
 """
 
@@ -68,9 +69,12 @@ class Study:
         """The last word of a key or the name of a quantity, with its unit."""
         variable = self.data.variables[name if name in self.data.variables else f"stated_{name}"]
         word = variable.long_name.split(".")[-1] if hasattr(variable, "axis") else name
+        kind, _, rest = word.partition("_")
+        word = rest if kind in ("ratio", "change") else word
         of = word.removeprefix("steady_")
         word = ("steady " if of != word else "") + NAMES.get(of, of.replace("_", " "))
-        return with_unit(word, getattr(variable, "units", "1"))
+        word += "\nover the other" if kind == "ratio" else ""
+        return with_unit(("change of " if kind == "change" else "") + word, getattr(variable, "units", "1"))
 
 
 def style(i):
@@ -287,7 +291,7 @@ def plot_points(study, figure, asked=None):
     parameter, members = numbers[0], study["point_member"].astype(int)
     x, names = study[parameter.name][members], list(study["fish"])
     words = [", ".join(f"{v.long_name.split('.')[-1]} {study[v.name][m]}" for v in swept if v is not parameter) for m in members]
-    known = [name[len("bar_") :] for name in study.data.variables if name.startswith("bar_")]
+    known = [name[len("bar_") :] for name in study.data.variables if name.startswith("bar_") and "_change_" not in name]
     if asked and asked not in known:
         raise FileError(f"{study.path}: no error of {asked}: the file has those of {', '.join(known)}")
     known = [q for q in ([asked] if asked else known) if np.isfinite(study[f"bar_{q}"]).any()]
@@ -314,9 +318,9 @@ def plot_points(study, figure, asked=None):
 
 
 def plot_budget(study, figure):
-    """The errors of a case, a row per quantity: the value with its error and the range of other models; the part of each key
+    """The errors of a case, a row per quantity, and per ratio to another case: the value with its error and the range of other models; the part of each key
     in the error; and what the levels of each key differ by."""
-    asked = [name[len("bar_") :] for name in study.data.variables if name.startswith("bar_")]
+    asked = [name[len("bar_") :] for name in study.data.variables if name.startswith("bar_") and "_change_" not in name]
     keys = [k for k in range(study["key_levels"].size) if not study["key_is_choice"][k] and study["key_levels"][k] > 1]
     names = [str(study.data["key_name"][k]).strip("\0").split(".")[-1].replace("_", " ") for k in keys]
     fish = 0  # the others look alike, and are in error.csv
@@ -362,7 +366,7 @@ def draw_levels(axes, study, quantity, keys, part, fish):
     ticks, drawn, at = [], [], 0.0
     for i, k in enumerate(keys):
         n, stated = int(study["key_levels"][k]), int(study["key_stated"][k])
-        values = study[quantity][study["key_member"][k, :n].astype(int), fish]
+        values = study[f"level_{quantity}"][k, :n, fish]
         differences = np.abs(values - values[0]) * percent
         errors = differences + max(part[i] - differences[stated], 0)
         differences, errors = (np.where(some > 0, some, np.nan) for some in (differences, errors))  # the axis has no 0
@@ -638,6 +642,17 @@ def reference_of(path, key):
         raise FileError(f"{path}: a table of numbers with a column {key} is needed") from error
 
 
+def relative_words(study):
+    """What the reference of the ratios has on the axis with `relative_to`: "modulus 1e+06"."""
+    member, chosen = study["relative_member"].astype(int), None
+    for axis in study.axes:
+        values = study[axis[0].name]
+        if (values[member] == values[member[0]]).all() and (chosen is None or not (values == values[member]).all()):
+            chosen = axis[0]
+    value = study[chosen.name][member[0]]
+    return f"{chosen.long_name.split('.')[-1]} {value:g}" if study.is_number(chosen.name) else f"{chosen.long_name.split('.')[-1]} {value}"
+
+
 def plot_lines(study, figure, asked=None, x=None, label=None, reference=None):
     """Three quantities, or the one that is asked for, over the first axis, or over x with a label; a line per fish and per
     value of the rest, and the values of a reference."""
@@ -649,9 +664,12 @@ def plot_lines(study, figure, asked=None, x=None, label=None, reference=None):
     names = list(study["fish"])
     quantities = [asked] if asked else panels_of(study, first)
     source, other_x, others = reference_of(reference, first.long_name) if reference else (None, None, {})
+    is_relative = "relative_member" in study.data.variables
+    ratios = [f"ratio_{quantity}" for quantity in quantities] if is_relative and not (asked or "").startswith("ratio_") else []
     figure.set_figheight(1.2 + 1.2 * len(quantities))
-    stack = figure.subplots(len(quantities), 1, sharex=True, squeeze=False)[:, 0]
-    for axes, quantity in zip(stack, quantities):
+    panels = figure.subplots(len(quantities), 2 if ratios else 1, sharex=True, squeeze=False)
+    stack = panels[:, 0]
+    for axes, quantity in zip(panels.T.ravel(), [*quantities, *ratios]):
         value, title = study[quantity], study.label(quantity)
         i = 0
         for words in dict.fromkeys(map(tuple, rest)):
@@ -662,16 +680,19 @@ def plot_lines(study, figure, asked=None, x=None, label=None, reference=None):
                 i += 1
         if quantity in others:
             axes.plot(other_x, others[quantity], color="#888888", ls="--", lw=1.2, zorder=1)
-        axes.set_yscale(scale_of(value[study.complete]))
+        axes.set_yscale("linear" if quantity in ratios else scale_of(value[study.complete]))
         calm([axes], rounding=SAME)
         if quantity == "efficiency" and np.nanmin(value[study.complete]) < 0 < np.nanmax(value[study.complete]):
             axes.set_ylim(0, None)  # a body that brakes has none
         axes.set_ylabel(title.replace(" [", "\n["))
         axes.grid(lw=0.3, color=GRID)
-    stack[-1].set_xscale(scale_of(x) if is_number else "linear")
-    if not is_number:
-        stack[-1].set_xticks(x, study[first.name])
-    stack[-1].set_xlabel(label or study.label(first.name))
+    for axes in panels[-1]:
+        axes.set_xscale(scale_of(x) if is_number else "linear")
+        if not is_number:
+            axes.set_xticks(x, study[first.name])
+        axes.set_xlabel(label or study.label(first.name))
+    if ratios:
+        panels[0, 1].set_title(f"over the values at {relative_words(study)}", size=8)
     if reference:
         stack[0].plot([], [], color="#888888", ls="--", lw=1.2, label=source)
     if i > 1 or reference:

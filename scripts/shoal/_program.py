@@ -254,26 +254,30 @@ def _run_study(command, case, assignments, path, overwrite, processes, progress,
     return os.fsdecode(text_of(path, "path"))
 
 
-def _swept(sweep) -> list[str]:
-    """The assignment of a sweep, {key: values, ...}, as a full grid; none for None."""
+def _swept(sweep, relative_to=None) -> list[str]:
+    """The assignment of a sweep, {key: values, ...}, as a full grid; none for None. relative_to: of the first key."""
+    if sweep is None and relative_to is not None:
+        raise CaseError("study: relative_to is of the argument sweep; in a case each axis of its sweep has the key")
     if sweep is None:
         return []
     if not isinstance(sweep, Mapping) or not sweep:
         raise TypeError(f"sweep is a dict of keys with their values, not {kind(sweep)}")
     axes = [{"key": str(key), "values": list(values)} for key, values in sweep.items()]
+    axes[0] |= {} if relative_to is None else {"relative_to": relative_to}
     return ["sweep=" + json.dumps(axes, default=lambda value: value.item())]
 
 
 def study(case, assignments=None, path=None, overwrite: bool = False, processes: int | None = None,
-          progress: bool | None = None, folder=None, sweep: Mapping | None = None):
+          progress: bool | None = None, folder=None, sweep: Mapping | None = None, relative_to=None):
     """Run all members of a case with a sweep (doc/studies.md); returns study.nc as an xarray.Dataset, in which the swept
     keys are coordinates: data.speed.plot(x="body_modulus"). shoal.grid gives each axis of the sweep a dimension.
 
     path: of the folder of the study (None: the name of the case with -study). overwrite: replace a study that exists;
     else members that are complete are kept. processes: members at once. sweep: {key: values, ...}, a full grid in place
-    of the sweep of the case. The path of study.nc is in attrs["path"].
+    of the sweep of the case. relative_to: "first" or another value of the first key of sweep: adds ``ratio_speed`` and so on,
+    the results over those at this value. The path of study.nc is in attrs["path"].
     """
-    path = _run_study("study", case, [*strings_of(assignments), *_swept(sweep)], path, overwrite, processes, progress, folder)
+    path = _run_study("study", case, [*strings_of(assignments), *_swept(sweep, relative_to)], path, overwrite, processes, progress, folder)
     return _open_study(path)
 
 

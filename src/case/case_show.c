@@ -89,6 +89,10 @@ static void show_axis(struct text *text, const struct case_values *values, int a
 
     text_add(text, "]\n");
     if (axis->steady) text_add(text, "    steady: true\n");
+    if (axis->is_relative) {
+        text_add(text, "    relative_to: %s\n",
+                 axis->relative_to == 0 ? "first" : axis->value[axis->relative_to * axis->n_keys]);
+    }
     if (!axis->refine) return;
     text_add(text, "    refine: true\n");
 

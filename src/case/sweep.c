@@ -2,6 +2,7 @@
  *
  *     - {key: solver.rtol, values: [1e-4, 1e-5]}                                       one key
  *     - {keys: [fish[*].nodes, fish[*].sheet_points], values: [[7, 21], [13, 41]]}     two that change together
+ *     - {key: "fish[*].body.modulus", values: [1e5, 1e6], relative_to: first}          results over those at 1e5
  *     - {key: ..., values: ..., refine: true,                                          resolutions
  *        reference: {speed: 1.014, nose: [-1.6, 0.01]},                                reference of errors and orders
  *        expect: {order: 2, within: 0.2, of: [nose, speed]}}
@@ -66,6 +67,27 @@ int sweep_member_before(const struct case_values *study, int member) {
         const int value = sweep_member_value(study, member, a), before = axis->before ? axis->before[value] : value - 1;
         if (axis->steady) return before >= 0 ? member - (value - before) * stride : -1;
         stride *= study->sweep[a].n_values;
+    }
+    return -1;
+}
+
+int sweep_find_value(const struct sweep_axis *axis, const char *wanted) {
+    double number, value;
+    if (strcmp(wanted, "first") == 0) return 0;
+    for (int i = 0; i < axis->n_values; i++) {
+        const char *const text = axis->value[i * axis->n_keys];
+        const bool are_numbers = text_number(text, &value) && text_number(wanted, &number);
+        if (are_numbers ? !(fabs(value - number) > 1e-12 * fabs(number)) : strcmp(text, wanted) == 0) return i;
+    }
+    return -1;
+}
+
+int sweep_member_reference(const struct case_values *study, int member) {
+    int stride = 1;
+    for (int a = study->n_axes - 1; a >= 0; a--) {
+        const struct sweep_axis *const axis = &study->sweep[a];
+        if (axis->is_relative) return member + (axis->relative_to - sweep_member_value(study, member, a)) * stride;
+        stride *= axis->n_values;
     }
     return -1;
 }
@@ -306,7 +328,8 @@ static void axis_read(struct axis *axis) {
         return;
     }
 
-    yaml_tree_check_keys(axis->node, axis->name, "key, keys, values, refine, expect, reference, steady", errors);
+    yaml_tree_check_keys(axis->node, axis->name, "key, keys, values, refine, expect, reference, steady, relative_to",
+                         errors);
     axis_read_keys(axis);
     if (axis->n_keys == 0) return;
     axis_read_values(axis);
@@ -327,6 +350,24 @@ static void axis_read(struct axis *axis) {
             yaml_errors_add(errors, node->mark, "%s: sweep[%d] is %s already; one axis can be", path, i,
                             is_steady ? "steady" : "refined");
         }
+    }
+
+    // the value that the results are compared with
+    const struct yaml_node *const relative = yaml_tree_find(axis->node, "relative_to");
+    if (relative) {
+        struct text wanted = {.arena = axis->errors->arena};
+        yaml_write_node(&wanted, relative);
+        into->is_relative = true;
+        into->relative_to = sweep_find_value(into, relative->kind == YAML_SCALAR ? relative->text : wanted.text);
+        if (into->relative_to < 0) {
+            yaml_errors_add(errors, relative->mark, "%s.relative_to: %.60s is neither `first` nor a value of %.60s",
+                            axis->name, wanted.text, into->key[0].path);
+        }
+    }
+    for (int i = 0; i < axis->values->n_axes && relative; i++) {
+        if (!axis->values->sweep[i].is_relative) continue;
+        yaml_errors_add(errors, relative->mark, "%s.relative_to: sweep[%d] has it already; one axis can", axis->name,
+                        i);
     }
 
     // the expected order

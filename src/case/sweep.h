@@ -28,6 +28,8 @@ struct sweep_axis {
     bool steady;          /* members are steady states; each search starts from the state of the previous value */
     int *before;          /* start from the state of this value instead, -1: start of the case; NULL     (n_values) */
     bool *is_against;     /* run the case of error.against; NULL: no value does                            (n_values) */
+    bool is_relative;     /* the results of all members are also divided by those of the members with one value: */
+    int relative_to;      /* the number of that value */
     double order, within; /* the expected order of convergence: order +- within; NaN: none */
     uint64_t order_of;    /* bit q: of quantity q */
     double *reference;    /* see sweep_reference; NULL: none */
@@ -49,6 +51,13 @@ int sweep_member_value(const struct case_values *study, int member, int axis);
  * member with the previous value of that axis; -1 for the first value. */
 bool sweep_is_steady(const struct case_values *study);
 int sweep_member_before(const struct case_values *study, int member);
+
+/* The number of a value of the first key of an axis: of "first", of an equal number or of the same text; -1: none. */
+int sweep_find_value(const struct sweep_axis *axis, const char *wanted);
+
+/* The member whose results those of a member are divided by: it has another value on the axis with `relative_to`, and
+ * the same values on all others. -1: no axis has it. */
+int sweep_member_reference(const struct case_values *study, int member);
 
 /* Add "solver.rtol=1e-5": the assignment of this value to key k of an axis; to a text that is not empty with a comma.
  * Returns false, and adds nothing, for a value that is that of the case. */

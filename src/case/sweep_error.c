@@ -193,6 +193,11 @@ void sweep_error_read(struct case_values *values, const struct yaml_node *root, 
         if (!values->sweep[a].refine) continue;
         yaml_errors_add(errors, map->mark, "error: replaces the refined axis sweep[%d]: remove error or refine", a);
     }
+    for (int a = 0; a < values->n_axes; a++) {
+        if (!values->sweep[a].is_relative) continue;
+        yaml_errors_add(errors, map->mark,
+                        "error: sweep[%d].relative_to gives no errors: remove it and write error.against", a);
+    }
     const struct yaml_node *const of = yaml_tree_find(map, "of"), *const keys = yaml_tree_find(map, "keys"),
                                   *const confirm = yaml_tree_find(map, "confirm"),
                                   *const models = yaml_tree_find(map, "models"),

@@ -239,8 +239,8 @@ static int twin_of(const struct error_study *study, int m) {
     return -1;
 }
 
-/* A number of a member, or its ratio to that of the twin, or the difference; NaN if a member is not complete. */
-static double value_of(const struct error_study *study, const struct member_file *members, int m, int q, int f) {
+double convergence_study_value(const struct error_study *study, const struct member_file *members, int m, int q,
+                               int f) {
     if (m < 0 || !member_file_is_complete(&members[m])) return NAN;
     const int quantity = study->quantity[q];
     const bool of_fish = member_file_quantity(quantity)->of_fish;
@@ -248,7 +248,7 @@ static double value_of(const struct error_study *study, const struct member_file
     if (study->relation == ERROR_VALUE) return value;
     const int twin_fish = of_fish ? error_plan_twin_fish(study, f) : 0;
     if (twin_fish < 0) return NAN;
-    const double other = value_of(study->twin, members, twin_of(study, m), q, twin_fish);
+    const double other = convergence_study_value(study->twin, members, twin_of(study, m), q, twin_fish);
     return study->relation == ERROR_RATIO ? value / other : value - other;
 }
 
@@ -288,9 +288,9 @@ static double study_noise(const struct error_study *study, const struct member_f
         const double own = study_noise(study->point, members, m, q, f),
                      other = study_noise(study->twin, members, twin, q, fish);
         if (study->relation == ERROR_RATIO) return own + other;
-        return (own * fabs(value_of(study->point, members, m, q, f)) +
-                other * fabs(value_of(study->twin, members, twin, q, fish))) /
-               fabs(value_of(study, members, m, q, f));
+        return (own * fabs(convergence_study_value(study->point, members, m, q, f)) +
+                other * fabs(convergence_study_value(study->twin, members, twin, q, fish))) /
+               fabs(convergence_study_value(study, members, m, q, f));
     }
     return convergence_noise(study->study, study->values, members, m, study->base, study->is_static ? 0 : study->beat,
                              member_file_quantity(study->quantity[q])->name, f);
@@ -460,13 +460,14 @@ static void judge_key(struct error_study *study, const struct member_file *membe
             struct convergence_result *const part = &key->part[error_plan_place(study, q, f)];
             const bool is_choice = key->row->kind == SWEEP_MODEL;
             if (!is_choice && f > 0 && !member_file_quantity(study->quantity[q])->of_fish) continue;
-            for (int i = 0; i < key->n_levels; i++) value[i][0] = value_of(study, members, key->member[i], q, f);
+            for (int i = 0; i < key->n_levels; i++)
+                value[i][0] = convergence_study_value(study, members, key->member[i], q, f);
             const double noise = study_noise(study, members, stated, q, f);
             if (!is_choice) {
                 *part = convergence_judge(&levels, (const double(*)[2])value, noise);
                 continue;
             }
-            const double base = value_of(study, members, stated, q, f);
+            const double base = convergence_study_value(study, members, stated, q, f);
             *part = (struct convergence_result){.finest_error = NAN, .order = NAN};
             for (int i = 0; i < key->n_levels; i++) {
                 const double change = fabs(value[i][0] - base);
@@ -522,17 +523,17 @@ void convergence_study_judge(struct error_study *study, const struct member_file
     for (int q = 0; q < study->n_asked; q++) {
         for (int f = 0; f < study->n_fish; f++) {
             const int place = error_plan_place(study, q, f);
-            double sum = 0, shift = 0, spread = 0, moved = value_of(study, members, study->base, q, f);
+            double sum = 0, shift = 0, spread = 0, moved = convergence_study_value(study, members, study->base, q, f);
             for (int k = 0; k < study->n_keys; k++) {
                 const struct error_study_key *const key = &study->key[k];
                 if (!is_error(key)) continue;
                 sum += key->part[place].error;
                 shift += key->part[place].shift;
                 spread += key->part[place].spread;
-                moved += value_of(study, members, key->member[key->stated], q, f) -
-                         value_of(study, members, key->member[key->first_stated], q, f);
+                moved += convergence_study_value(study, members, key->member[key->stated], q, f) -
+                         convergence_study_value(study, members, key->member[key->first_stated], q, f);
             }
-            study->value[place] = value_of(study, members, study->stated, q, f);
+            study->value[place] = convergence_study_value(study, members, study->stated, q, f);
             study->together[place] = n_moved > 1 ? fabs(study->value[place] - moved) : 0;
             study->parts[place] = sum;
             study->error[place] = fmin(sum, fabs(shift) + spread) + study->together[place];
@@ -540,12 +541,13 @@ void convergence_study_judge(struct error_study *study, const struct member_file
 
             // the lowest and the highest value with other choices of the model: the stated value plus the change of the
             // case by the choice
-            const double stated = study->value[place], base = value_of(study, members, study->base, q, f);
+            const double stated = study->value[place],
+                         base = convergence_study_value(study, members, study->base, q, f);
             study->lowest[place] = study->highest[place] = (struct error_study_model){stated, -1, 0};
             for (int k = 0; k < study->n_keys; k++) {
                 const struct error_study_key *const key = &study->key[k];
                 for (int i = 0; i < key->n_levels && key->n_levels > 1 && key->row->kind == SWEEP_MODEL; i++) {
-                    const double value = stated + value_of(study, members, key->member[i], q, f) - base;
+                    const double value = stated + convergence_study_value(study, members, key->member[i], q, f) - base;
                     const struct error_study_model model = {value, k, i};
                     if (value < study->lowest[place].value) study->lowest[place] = model;
                     if (value > study->highest[place].value) study->highest[place] = model;
@@ -609,8 +611,8 @@ static double next_error(const struct error_study *study, const struct member_fi
     if (!is_movable(key, part)) return NAN;
     if (part->verdict == CONVERGENCE_NONE) return part->error;
     if (key->stated > 0) {
-        return part->finest_error + fabs(value_of(study, members, key->member[key->stated - 1], q, f) -
-                                         value_of(study, members, key->member[0], q, f));
+        return part->finest_error + fabs(convergence_study_value(study, members, key->member[key->stated - 1], q, f) -
+                                         convergence_study_value(study, members, key->member[0], q, f));
     }
     const double order = fmin(sweep_error_order(study->values, key->row), part->order);  // fmin ignores NaN
     return part->finest_error * pow(error_plan_size(key->row, next) / error_plan_size(key->row, key->value[0]), order);

@@ -146,6 +146,11 @@ struct error_study_next {
     double sum;     /* predicted largest error of all keys over the value of a quantity */
 };
 
+/* A requested quantity of a fish of a member, or its ratio to that of the twin, or the difference; NaN if a member is
+ * not complete. */
+double convergence_study_value(const struct error_study *study, const struct member_file *members, int m, int quantity,
+                               int fish);
+
 /* The levels of a key for convergence_judge; size: (ERROR_STUDY_LEVELS), filled. */
 struct convergence_levels convergence_study_levels(const struct error_study *study, const struct error_study_key *key,
                                                    double *size);

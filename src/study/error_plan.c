@@ -567,15 +567,7 @@ static enum status choose_twins(struct error_sweep *sweep, int n_axes, const str
             if (strcmp(equals + 1, name) == 0) sweep->twin_fish = f;
         }
     } else if (error->against_kind == AGAINST_POINT) {
-        // a value is compared as a number, or as a text
-        double wanted, value;
-        int found = strcmp(error->against, "first") == 0 ? 0 : -1;
-        for (int i = 0; i < axes[0].n_values && found < 0; i++) {
-            const char *const text = axes[0].value[i * axes[0].n_keys];
-            const bool are_numbers = text_number(text, &value) && text_number(error->against, &wanted);
-            if (are_numbers ? !(fabs(value - wanted) > 1e-12 * fabs(wanted)) : strcmp(text, error->against) == 0)
-                found = i;
-        }
+        const int found = n_axes > 0 ? sweep_find_value(&axes[0], error->against) : -1;
         if (found < 0) {
             return status_fail(STATUS_CASE, "error.against: %.60s is neither `first` nor a value of %s", error->against,
                                n_axes > 0 ? axes[0].key[0].path : "a sweep");

@@ -95,6 +95,13 @@ double member_file_number(const struct member_file *member, const char *name, in
     return member_file_value(member, member_file_quantity_number(name), fish, 0);
 }
 
+double member_file_ratio(const struct member_file *members, int m, int other, int quantity, int fish) {
+    const double value = member_file_value(&members[m], quantity, fish, 0),
+                 unit = member_file_value(&members[other], quantity, fish, 0);
+    const bool are_complete = member_file_is_complete(&members[m]) && member_file_is_complete(&members[other]);
+    return are_complete && fabs(unit) > 0 ? value / unit : NAN;
+}
+
 bool member_file_is_complete(const struct member_file *member) {
     return strcmp(member->status, "complete") == 0;
 }

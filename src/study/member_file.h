@@ -52,6 +52,9 @@ void member_file_create_values(struct arena *arena, struct member_file *member, 
 double member_file_value(const struct member_file *member, int quantity, int fish, int xy);
 double member_file_number(const struct member_file *member, const char *name, int fish);
 
+/* A value of member m over that of another member; NaN unless both are complete and the other value is not 0. */
+double member_file_ratio(const struct member_file *members, int m, int other, int quantity, int fish);
+
 /* Whether the run of the member is complete, or has failed with these words in the message. */
 bool member_file_is_complete(const struct member_file *member);
 bool member_file_has_failed(const struct member_file *member, const char *words);

@@ -30,7 +30,7 @@ static const char *const dimension_names[N_DIMENSIONS] = {"member", "group", "po
                                                           "fish",   "xy",    "level", "text"};
 
 /* The rows of the table, in this order. */
-enum { MEMBER, STATUS, WARNINGS, FISH_NAME, SWEPT_KEY, QUANTITY, N_MEMBER_ROWS };
+enum { MEMBER, STATUS, WARNINGS, FISH_NAME, SWEPT_KEY, QUANTITY, REFERENCE, RATIO, N_MEMBER_ROWS };
 enum { LEVEL_VALUE = N_MEMBER_ROWS, LEVEL_SIZE, GROUP_MEMBER, DESIGN_ORDER, N_LEVEL_ROWS };
 enum { DIFFERENCE = N_LEVEL_ROWS, COARSE_ORDER, ORDER, LIMIT, ERROR, FLAG, N_ORDER_ROWS };
 enum { POINT_MEMBER = N_ORDER_ROWS, KEY_NAME, KEY_REASON, KEY_LEVELS, KEY_STATED, KEY_IS_CHOICE, N_NAME_ROWS };
@@ -45,14 +45,27 @@ enum {
     PART,
     SHIFT,
     SPREAD,
+    AT_LEVEL,
     KEY_ORDER,
     KEY_FLAG,
     N_ROWS
 };
 
-/* Existence of the variables of a row: once, for each swept key, for each quantity of members; with a refined axis, and
- * for each quantity with orders; in an error study, in a sweep of errors, and for each quantity with errors. */
-enum existence { ALWAYS, BY_SWEPT_KEY, BY_QUANTITY, IN_ORDERS, BY_ORDER, IN_ERRORS, IN_POINTS, BY_ERROR };
+/* Existence of the variables of a row: once, for each swept key, for each quantity of members; with `relative_to`, and
+ * then for each number of members; with a refined axis, and for each quantity with orders; in an error study, in a
+ * sweep of errors, and for each quantity with errors. */
+enum existence {
+    ALWAYS,
+    BY_SWEPT_KEY,
+    BY_QUANTITY,
+    IN_RATIOS,
+    BY_RATIO,
+    IN_ORDERS,
+    BY_ORDER,
+    IN_ERRORS,
+    IN_POINTS,
+    BY_ERROR
+};
 
 static const char of_key[] = "of the key"; /* the unit of the key */
 
@@ -70,6 +83,9 @@ static const struct row {
     {"fish", "", NETCDF_TEXT, ALWAYS, F | T, "name of the fish"},
     {"%s", NULL, NETCDF_DOUBLE, BY_SWEPT_KEY, M, "%s"},
     {"%s", NULL, NETCDF_DOUBLE, BY_QUANTITY, M | F | X, "%s"},
+    {"relative_member", "1", NETCDF_INT, IN_RATIOS, M,
+     "member whose values ratio_... divides by: relative_to of the sweep"},
+    {"ratio_%s", "1", NETCDF_DOUBLE, BY_RATIO, M | F, "%s over that of relative_member; NaN: one is unknown or 0"},
     {"level_value", of_key, NETCDF_DOUBLE, IN_ORDERS, L, "value of the refined key, from coarse to fine"},
     {"level_size", of_key, NETCDF_DOUBLE, IN_ORDERS, L, "grid spacing: the value, or 1/(n - 1) of n points"},
     {"group_member", "1", NETCDF_INT, IN_ORDERS, G, "first member of each group"},
@@ -101,6 +117,7 @@ static const struct row {
     {"shift_%s", NULL, NETCDF_DOUBLE, BY_ERROR, P | K | F,
      "change of %s from the stated value to where the levels of each key lead"},
     {"spread_%s", NULL, NETCDF_DOUBLE, BY_ERROR, P | K | F, "error of shift_%s"},
+    {"level_%s", NULL, NETCDF_DOUBLE, BY_ERROR, P | K | KL | F, "%s at each level of each key, from fine to coarse"},
     {"key_order_%s", "1", NETCDF_DOUBLE, BY_ERROR, P | K | F, "observed order of %s in each key"},
     {"key_flag_%s", "", NETCDF_TEXT, BY_ERROR, P | K | F | T,
      "reason why the levels of each key give no order of %s, or empty"},
@@ -172,7 +189,7 @@ static void add_variable(struct contents *contents, struct variable v) {
     for (enum dimension d = BY_MEMBER; d < BY_TEXT; d++) {
         // a quantity without fish or directions lacks these dimensions, a case without a sweep the dimension of points
         const bool is_of_quantity = v.row == QUANTITY || v.row == LIMIT;
-        const bool is_missing = (d == BY_FISH && v.row == QUANTITY && !v.quantity->of_fish) ||
+        const bool is_missing = (d == BY_FISH && (v.row == QUANTITY || v.row == RATIO) && !v.quantity->of_fish) ||
                                 (d == BY_XY && is_of_quantity && !v.quantity->of_xy);
         if (!(row->dimensions >> d & 1) || is_missing || contents->length[d] == 0) continue;
         v.dimension[v.n_dimensions++] = d;
@@ -184,11 +201,11 @@ static void add_variable(struct contents *contents, struct variable v) {
 /* List all variables, row by row. */
 static void list_variables(struct contents *contents) {
     const struct case_values *const study = contents->study;
-    const bool has_orders = contents->orders->n_groups > 0;
+    const bool has_orders = contents->orders->n_groups > 0, has_ratios = sweep_member_reference(study, 0) >= 0;
     for (int r = 0; r < N_ROWS; r++) {
         const enum existence existence = rows[r].existence;
-        const bool is_one = existence == ALWAYS || (existence == IN_ORDERS && has_orders) ||
-                            (existence == IN_ERRORS && contents->errors) ||
+        const bool is_one = existence == ALWAYS || (existence == IN_RATIOS && has_ratios) ||
+                            (existence == IN_ORDERS && has_orders) || (existence == IN_ERRORS && contents->errors) ||
                             (existence == IN_POINTS && contents->length[BY_POINT] > 0);
         if (is_one) add_variable(contents, (struct variable){.row = r});
         for (int a = 0; a < study->n_axes && existence == BY_SWEPT_KEY; a++) {
@@ -196,8 +213,10 @@ static void list_variables(struct contents *contents) {
                 add_variable(contents, (struct variable){.row = r, .axis = a, .key = k});
             }
         }
-        for (int q = 0; member_file_quantity(q) && existence == BY_QUANTITY; q++) {
+        const bool of_quantity = existence == BY_QUANTITY || (existence == BY_RATIO && has_ratios);
+        for (int q = 0; member_file_quantity(q) && of_quantity; q++) {
             const struct member_file_quantity *const quantity = member_file_quantity(q);
+            if (r == RATIO && (quantity->of_xy || strcmp(quantity->name, "time") == 0)) continue;
             const bool is_here =
                 quantity->of_steady ? sweep_is_steady(study) : !quantity->of_comparison || compare_is(study);
             if (is_here) add_variable(contents, (struct variable){.row = r, .number = q, .quantity = quantity});
@@ -241,6 +260,12 @@ static struct value member_value(const struct contents *contents, const struct v
             const struct sweep_axis *const axis = &study->sweep[v->axis];
             value.text = axis->value[sweep_member_value(study, i[0], v->axis) * axis->n_keys + v->key];
             if (!text_number(value.text, &value.number)) value.number = NAN;
+            break;
+        }
+        case REFERENCE: value.number = sweep_member_reference(study, i[0]); break;
+        case RATIO: {
+            const int other = sweep_member_reference(study, i[0]);
+            value.number = member_file_ratio(contents->member, i[0], other, v->number, v->quantity->of_fish ? i[1] : 0);
             break;
         }
         default: {
@@ -288,7 +313,7 @@ static struct value error_value(const struct contents *contents, const struct va
     if (is_of_point) i++;
     const bool is_model = v->row == LOWEST || v->row == HIGHEST;
     const bool is_sum = v->row == STATED || v->row == BAR || is_model;
-    const int place = error_plan_place(point, v->number, is_sum ? i[0] : i[1]);
+    const int place = error_plan_place(point, v->number, is_sum ? i[0] : i[v->row == AT_LEVEL ? 2 : 1]);
     if (is_model && !(contents->study->error->models && point->is_full)) return (struct value){.number = NAN};
     if (is_model) return (struct value){.number = (v->row == LOWEST ? point->lowest : point->highest)[place].value};
     if (is_sum) return (struct value){.number = v->row == STATED ? point->value[place] : point->error[place]};
@@ -312,6 +337,10 @@ static struct value error_value(const struct contents *contents, const struct va
         case PART: return (struct value){.number = n_levels > 1 ? key->part[place].error : NAN};
         case SHIFT: return (struct value){.number = n_levels > 1 ? key->part[place].shift : NAN};
         case SPREAD: return (struct value){.number = n_levels > 1 ? key->part[place].spread : NAN};
+        case AT_LEVEL:
+            if (i[1] >= n_levels) return (struct value){.number = NAN};
+            return (struct value){
+                .number = convergence_study_value(point, contents->member, key->member[i[1]], v->number, i[2])};
         case KEY_ORDER: return (struct value){.number = n_levels > 1 ? key->part[place].order : NAN};
         default:
             *text = '\0';

@@ -98,22 +98,23 @@ enum { MAX_FISH_SHOWN = 4, MAX_WARNINGS_SHOWN = 20 };
 static const struct shown {
     const char *quantity, *head, *format;
     int of_held;
+    bool has_ratio; /* says something over the value of another member */
 } shown[] = {
-    {"time", "t", "%.4g", 0},
-    {"speed", "speed", "%.5f", 0},
-    {"mean_heading", "heading", "%.3f", 0},
-    {"cost_of_transport", "cost", "%.4g", 0},
-    {"strouhal", "Strouhal", "%.4f", 0},
-    {"mean_thrust", "thrust", "%.5g", 1},
-    {"mean_power", "power", "%.5g", 1},
-    {"efficiency", "efficiency", "%.5f", 1},
-    {"steady_growth", "growth", "%+.4f", 0},
-    {"lateral_drift", "drift", "%.5f", 0},
-    {"shed_circulation", "shed", "%.5f", 0},
-    {"energy_balance", "balance", "%.1e", 0},
-    {"steps", "steps", "%.0f", 0},
-    {"residual_evaluations", "evaluations", "%.0f", 0},
-    {"wall_time", "wall", "%.2f", 0},
+    {"time", "t", "%.4g", 0, false},
+    {"speed", "speed", "%.5f", 0, true},
+    {"mean_heading", "heading", "%.3f", 0, false},
+    {"cost_of_transport", "cost", "%.4g", 0, true},
+    {"strouhal", "Strouhal", "%.4f", 0, true},
+    {"mean_thrust", "thrust", "%.5g", 1, true},
+    {"mean_power", "power", "%.5g", 1, true},
+    {"efficiency", "efficiency", "%.5f", 1, true},
+    {"steady_growth", "growth", "%+.4f", 0, false},
+    {"lateral_drift", "drift", "%.5f", 0, false},
+    {"shed_circulation", "shed", "%.5f", 0, true},
+    {"energy_balance", "balance", "%.1e", 0, false},
+    {"steps", "steps", "%.0f", 0, false},
+    {"residual_evaluations", "evaluations", "%.0f", 0, true},
+    {"wall_time", "wall", "%.2f", 0, true},
 };
 enum { N_SHOWN = sizeof shown / sizeof *shown };
 
@@ -157,16 +158,64 @@ static bool is_of_followers(const struct case_values *study) {
     return false;
 }
 
+/* Add the columns of the member, of the swept keys and, of a school, of the fish. */
+static void add_member_columns(struct table *table, const struct case_values *study) {
+    table_column(table, "member", "");
+    for (int a = 0; a < study->n_axes; a++) {
+        add_key_columns(table, study, &study->sweep[a], study->sweep[a].n_keys);
+    }
+    if (study->school.n_fish > 1) table_column(table, "fish", NULL);
+}
+
+static void add_member_cells(struct table *table, const struct case_values *study, int m, int f) {
+    table_cell(table, "%d", m);
+    for (int a = 0; a < study->n_axes; a++) {
+        const struct sweep_axis *const axis = &study->sweep[a];
+        const int value = sweep_member_value(study, m, a);
+        for (int k = 0; k < axis->n_keys; k++) table_cell(table, "%s", axis->value[value * axis->n_keys + k]);
+    }
+    if (study->school.n_fish > 1) table_cell(table, "%s", study->school.fish[f].name);
+}
+
+/* Print the values of the members over those of the members with the value of `relative_to`. quantity: the numbers of
+ * the shown quantities, -1: not shown                                                                      (N_SHOWN) */
+static void print_ratios(struct arena *arena, const struct case_values *study, const struct member_file *members,
+                         int n_fish, const int *quantity, FILE *stream) {
+    const struct sweep_axis *axis = study->sweep;
+    while (!axis->is_relative) axis++;
+    fprintf(stream, "\nOver the values at");
+    for (int k = 0; k < axis->n_keys; k++) {
+        fprintf(stream, "%s %s %s", k > 0 ? "," : "", last_word(axis->key[k].path),
+                axis->value[axis->relative_to * axis->n_keys + k]);
+    }
+    fprintf(stream, ":\n");
+
+    struct table *const table = table_create(arena, 0);
+    add_member_columns(table, study);
+    for (int s = 0; s < N_SHOWN; s++) {
+        if (quantity[s] >= 0 && shown[s].has_ratio) table_column(table, shown[s].head, "");
+    }
+    for (int m = 0; m < sweep_n_members(study); m++) {
+        for (int f = 0; f < n_fish; f++) {
+            add_member_cells(table, study, m, f);
+            for (int s = 0; s < N_SHOWN; s++) {
+                if (quantity[s] < 0 || !shown[s].has_ratio) continue;
+                const int of = member_file_quantity(quantity[s])->of_fish ? f : 0;
+                table_number(table, "%.5f",
+                             member_file_ratio(members, m, sweep_member_reference(study, m), quantity[s], of));
+            }
+            table_row(table);
+        }
+    }
+    table_print(table, stream);
+}
+
 void study_print(struct arena *arena, const struct case_values *study, const struct member_file *members,
                  FILE *stream) {
     const int n = sweep_n_members(study),
               n_fish = study->school.n_fish < MAX_FISH_SHOWN ? study->school.n_fish : MAX_FISH_SHOWN;
     struct table *const table = table_create(arena, 0);
-    table_column(table, "member", "");
-    for (int a = 0; a < study->n_axes; a++) {
-        add_key_columns(table, study, &study->sweep[a], study->sweep[a].n_keys);
-    }
-    if (n_fish > 1) table_column(table, "fish", NULL);
+    add_member_columns(table, study);
 
     // the printed quantities: thrust and power only beside a held body, values of steady states if a member has one
     bool has_held = false;
@@ -197,13 +246,7 @@ void study_print(struct arena *arena, const struct case_values *study, const str
     table_column(table, "status", NULL);
     for (int m = 0; m < n; m++) {
         for (int f = 0; f < n_fish; f++) {
-            table_cell(table, "%d", m);
-            for (int a = 0; a < study->n_axes; a++) {
-                const struct sweep_axis *const axis = &study->sweep[a];
-                const int value = sweep_member_value(study, m, a);
-                for (int k = 0; k < axis->n_keys; k++) table_cell(table, "%s", axis->value[value * axis->n_keys + k]);
-            }
-            if (n_fish > 1) table_cell(table, "%s", study->school.fish[f].name);
+            add_member_cells(table, study, m, f);
             for (int s = 0; s < N_SHOWN; s++) {
                 if (quantity[s] < 0) continue;
                 const int of = member_file_quantity(quantity[s])->of_fish ? f : 0;
@@ -226,6 +269,7 @@ void study_print(struct arena *arena, const struct case_values *study, const str
         fprintf(stream, "The first %d of %d fish; study.nc has all.\n", n_fish, study->school.n_fish);
     }
     print_failures(arena, members, n, false, stream);
+    if (sweep_member_reference(study, 0) >= 0) print_ratios(arena, study, members, n_fish, quantity, stream);
 }
 
 // ---- warnings

@@ -56,6 +56,25 @@ TEST(the_merged_text_is_the_complete_study) {
     assert_string_equal(again.merged, study.merged);
 }
 
+TEST(a_reference_has_the_value_of_relative_to_and_all_others_of_the_member) {
+    struct case_values study = parse(
+        "format: 1\ntime: {end: 1}\nfish: [{}]\nsweep:\n"
+        "  - {key: solver.rtol, values: [1e-4, 1e-5, 1e-6], relative_to: 0.00001}\n"
+        "  - {key: solver.order, values: [2, 3]}\n");
+    for (int m = 0; m < 6; m++) assert_int_equal(sweep_member_reference(&study, m), 2 + m % 2);
+    struct case_values again = parse(study.merged);
+    are_equal(&study, &again);
+    assert_non_null(strstr(case_show(test_arena(), &study), "    relative_to: 1e-5\n"));
+
+    study = parse(
+        "format: 1\ntime: {end: 1}\nfish: [{}]\nsweep:\n"
+        "  - {key: solver.order, values: [2, 3]}\n"
+        "  - {key: \"fish[0].start.position\", values: [[0, 0], [1, 0]], relative_to: [1, 0]}\n");
+    for (int m = 0; m < 4; m++) assert_int_equal(sweep_member_reference(&study, m), 1 + m / 2 * 2);
+    study = parse(zipped);
+    assert_int_equal(sweep_member_reference(&study, 0), -1);
+}
+
 TEST(a_sweep_is_shown_as_it_is_written) {
     struct case_values study = parse(refined);
     const char *const text = case_show(test_arena(), &study);

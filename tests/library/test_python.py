@@ -657,6 +657,13 @@ class Programs(unittest.TestCase):
             os.remove(swept.attrs["path"])
             again = shoal.gather(os.path.dirname(swept.attrs["path"]))
             np.testing.assert_array_equal(again["speed"], swept["speed"])
+            self.assertNotIn("ratio_speed", swept)
+            over = shoal.study(case, sweep={"fish[0].wave.frequency": [0.9, 1.1]}, relative_to=1.1, path="over", processes=1)
+            np.testing.assert_array_equal(over["ratio_speed"], over["speed"] / over["speed"][1])
+            with self.assertRaisesRegex(shoal.CaseError, "relative_to: 2.0 is neither `first` nor a value"):
+                shoal.study(case, sweep={"fish[0].wave.frequency": [0.9, 1.1]}, relative_to=2.0, path="none")
+            with self.assertRaisesRegex(shoal.CaseError, "relative_to is of the argument sweep"):
+                shoal.study(case, relative_to="first")
             with self.assertRaisesRegex(TypeError, "sweep is a dict"):
                 shoal.study(case, sweep=["fish[0].nodes"])
             compared = shoal.compare({**PAIR, "time": {"end": 0.02, "shedding_interval": 0.01}}, ["ida2", "ida3"], rtol=[1e-3, 1e-4])

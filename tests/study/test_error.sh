@@ -149,13 +149,15 @@ check gather_needs_the_members_only cmp out table
 run info compared/study.nc
 check the_file_is_enough_for_the_comparison cmp <(sed -n '/over that of/,$p' out) <(grep -v '^member .* warning: ' table)
 check the_ratio_of_the_file_is_that_of_the_members /usr/bin/python3 - <<'end'
-import csv, netCDF4
+import csv, netCDF4, numpy as np
 study = netCDF4.Dataset("compared/study.nc")
 ratio = float(study["stated_ratio_speed"][0])
 names = {getattr(netCDF4.Dataset(f"compared/member-{m:04}.nc"), "title"): m for m in range(2)}
 own, other = (float(study["speed"][names[name], 0]) for name in ("stiff", "soft"))
 assert abs(ratio - own / other) < 1e-12 * ratio, (ratio, own, other)
 rows = [row for row in csv.DictReader(open("compared/error.csv")) if row["key"] == "sum"]
+stated, level = int(study["key_stated"][0]), study["level_ratio_speed"][0, :, 0]
+assert level[stated] == ratio and np.isfinite(level).sum() == study["key_levels"][0], level
 assert [row["quantity"] for row in rows] == ["speed", "ratio_speed", "change_speed"], rows
 assert abs(float(rows[1]["error"]) / float(study["bar_ratio_speed"][0]) - 1) < 1e-2
 end
@@ -343,6 +345,8 @@ if /usr/bin/python3 -c 'import netCDF4, matplotlib' 2>err; then
     check a_picture_of_the_budget test -s budget.png
     /usr/bin/python3 "$scripts/plot.py" study along/study.nc along.png >>drawn 2>&1
     check a_picture_of_errors_along_a_sweep test -s along.png
+    /usr/bin/python3 "$scripts/plot.py" study compared/study.nc compared.png >>drawn 2>&1
+    check a_picture_of_a_comparison test -s compared.png
 else
     skip pictures 'python3-netcdf4 or python3-matplotlib is missing'
 fi

@@ -55,6 +55,25 @@ run info --case swimmer-study/member-0004.nc
 check the_last_axis_is_fastest has out 'amplitude: 0.3'
 check zipped_keys_change_together has out 'method: rk4'
 
+# results over those at one value; a member that failed has none
+
+run study swimmer.yaml -o relative --set 'sweep=[{key: "fish[*].wave.amplitude", values: [0.2, 0.3], relative_to: 0.3},
+    {keys: [solver.method, solver.max_steps], values: [[ida, 1000], [euler, 2]]}]'
+check ratios_have_a_table has out 'Over the values at amplitude 0.3:'
+sed -n '/^Over/,$p' out >table
+check the_reference_itself_is_1 grep -qE '^ +2 +0.3 +ida +1000 +1.00000 ' table
+run gather relative
+check gather_has_the_ratios cmp <(sed -n '/^Over/,$p' out) table
+check the_file_has_the_ratios /usr/bin/python3 - <<'end'
+import netCDF4, numpy as np
+study = netCDF4.Dataset("relative/study.nc")
+study.set_auto_mask(False)
+assert list(study["relative_member"][:]) == [2, 3, 2, 3]
+ratio, speed, steps = study["ratio_speed"][:, 0], study["speed"][:, 0], study["ratio_steps"][:]
+assert ratio[0] == speed[0] / speed[2] and ratio[2] == 1 and np.isnan(ratio[[1, 3]]).all(), ratio
+assert steps[0] == study["steps"][0] / study["steps"][2] and "ratio_nose" not in study.variables
+end
+
 finished=$(changed swimmer-study/member-0001.nc) failed=$(changed swimmer-study/member-0002.nc)
 run study swimmer.yaml
 check finished_members_are_passed_over test "$(changed swimmer-study/member-0001.nc)" = "$finished"
