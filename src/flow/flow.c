@@ -1,4 +1,4 @@
-/* flow.c: points and sources, and their positions at a time. */
+/* flow.c: classes of fish, and where points and sources are at a given time. */
 #include "flow/flow.h"
 
 #include <math.h>
@@ -69,8 +69,8 @@ void flow_append_with_span(struct sources *many, const struct sources *sources, 
 
 // ---- creation
 
-// one class per length, which both smoothings are parts of, in the order of the first fish of each length; consecutive
-// points for each class
+// Fish of one length form a class, because both smoothings are fractions of the length. Classes are in the order of
+// their first fish, and the points of a class are consecutive.
 static void flow_find_classes(struct flow *flow) {
     const struct school *const school = flow->school;
     for (int f = 0; f < school->n_fish; f++) {
@@ -169,7 +169,7 @@ static void flow_place_wake(const struct flow *flow, const struct state *state, 
     sheet_place(sheet, flow->school, wake, state->t, flow->t - state->t);
 }
 
-// points and bound vortices of a fish; legs and circulations of the control points
+// place the points and bound vortices of a fish, and find legs and circulations at its control points
 static void flow_place_body(struct flow *flow, int f, const double *y) {
     const struct fish *const fish = &flow->school->fish[f];
     struct flow_fish *const of = &flow->fish[f];
@@ -192,7 +192,6 @@ static void flow_place_body(struct flow *flow, int f, const double *y) {
     }
     if (!has_legs) return;
 
-    // legs
     wide_product(fish->n_control, n, fish->integrals->circulation, of->own.q, of->body.dx);
     wide_product(fish->n_control, fish->n_nodes, fish->control_by_node[1], node_x, of->line[0]);
     wide_product(fish->n_control, fish->n_nodes, fish->control_by_node[1], node_y, of->line[1]);
@@ -240,13 +239,13 @@ void flow_place_released(struct flow *flow, const struct state *state, double t)
     const unsigned long version = state_wake_version(state, school);
     const bool is_new = !flow->has_sources || flow->version != version;
 
-    // released points move on known paths: their positions at one time are independent of y
+    // released points move on known paths, so their positions at one time do not depend on y
     if (!is_new && flow->t == t) return;
     flow->has_sources = false;
     flow->version = version;
     flow->t = t;
 
-    // select the points again if the wakes have changed
+    // if the wakes have changed, choose the points that represent them again
     int n_placed = 0;
     for (int f = 0; f < school->n_fish; f++) {
         n_placed += (is_new ? 4 : 2) * state->wake[f].n_vortex;
@@ -273,7 +272,7 @@ void flow_place(struct flow *flow, const struct state *state, double t, const do
         for (int f = 0; f < school->n_fish; f++) flow_place_body(flow, f, y);
     }
 
-    // nascent points and images
+    // the nascent points, and the images of everything
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         const struct wake *const wake = &state->wake[f];
@@ -283,7 +282,7 @@ void flow_place(struct flow *flow, const struct state *state, double t, const do
         double tail[2];
         fish_tail(fish, y, tail);
         if (flow->is_steady) {
-            // the direction of the stream relative to the body, which is held at the first node
+            // the wake leaves in the direction of the stream relative to the body, which is held at the first node
             double place[2], velocity[2], acceleration[2], stream[2];
             fish_prescribed_node(fish, 0, t, place, velocity, acceleration);
             flow_external(school, t, place[0], place[1], &stream[0], &stream[1]);

@@ -1,13 +1,13 @@
-/* flow.h: positions of the evaluation points of all bodies, and positions and strengths of the sources of the flow. The
- * velocities at bodies are in flow_at_bodies.h and flow_derivative.h, those at wakes below. doc/model.md, sections 6 to
- * 9, 17, 18. Tested by tests/flow/test_flow.c.
+/* flow.h: what induces velocity, and where it is needed: the evaluation points of all bodies, and the positions and
+ * strengths of all sources. The sums at bodies are in flow_at_bodies.h and flow_derivative.h, those at wakes at the end
+ * of this file. doc/model.md, sections 6 to 9, 17, 18. Tested by tests/flow/test_flow.c.
  *
  * The points of one fish, in this order:
  *
  *     | control points (M-1)      | edge midpoints (N-1)      | tail (1)        |
  *
- * The sources of one fish, a list for each kind of target. The kernel (kernel.h) has a pair of constants for targets in
- * the strip of the same fish, and another for all other targets:
+ * The same fish is a source of several shapes, one for each kind of target, because the kernel (kernel.h) has one pair
+ * of constants for targets in the strip of the same fish and another for all others:
  *
  *     own control points        own: bound vortices, and legs at the control points; wake, point by point, tapered
  *     own midpoints, own tail   the middle of every stretch, at midpoints not with force: reactive; point vortices: the
@@ -16,7 +16,8 @@
  *     own and other wakes       body, for its own markers tapered; markers, or the queue
  *     images in walls           of all fish, including itself, as for other fish
  *
- * Smoothing: flow_square. Fish of equal length form a class, whose sources and targets have the same smoothing. */
+ * How a source is smoothed depends on the pair (flow_square). Fish of equal length form a class, whose sources and
+ * targets have the same smoothing, so that sums can run over a whole class. */
 #ifndef FLOW_H
 #define FLOW_H
 
@@ -32,17 +33,18 @@ enum { N_LEG_SUMS = 7 };
 
 /* The sources of one fish. */
 struct flow_fish {
-    struct sheet wake;    /* for control points of this fish, and for all other targets */
-    struct sources own;   /* bound vortices, then legs at control points, if the kernel has legs */
-    struct sources body;  /* with integrals of the sheet: control points, each with the circulation of its interval and
-                             its leg; else the bound vortices */
-    double *line[2];      /* dx of the control points, m                        (n_control) */
-    double nascent;       /* circulation of the nascent stretch or vortex, m2 s-1 */
-    double newest;        /* circulation shed before, m2 s-1 */
-    double downstream[2]; /* direction of the legs of a steady wake; 0 without a stream */
+    struct sheet wake;  /* one view for the control points of this fish, one for all other targets */
+    struct sources own; /* bound vortices, followed by the legs at control points if the kernel has legs */
+    /* with integrals of the sheet the control points, each with the circulation of its interval and its leg; otherwise
+     * the bound vortices */
+    struct sources body;
+    double *line[2];        /* dx of the control points, m                        (n_control) */
+    double nascent;         /* circulation of the nascent stretch or vortex, m2 s-1 */
+    double newest;          /* circulation that was shed before it, m2 s-1 */
+    double downstream[2];   /* direction of the legs of a steady wake; 0 without a stream */
     struct sources markers; /* markers, or queue and nascent vortex, at the last event */
     struct sources body_image, wake_image, markers_image;
-    struct box *leg_box; /* around the body, then around every 64 markers              (n_leg_boxes) */
+    struct box *leg_box; /* first around the body, then around every 64 markers     (n_leg_boxes) */
     int n_leg_boxes, leg_box_capacity;
 };
 
@@ -62,8 +64,9 @@ struct flow {
     struct arena *arena;
     const struct school *school;
     const struct kernel *kernel;
-    bool is_steady; /* all circulation was shed infinitely long ago, at the last sum: legs from the tail to infinity */
-    const volatile sig_atomic_t *stop; /* once *stop is not 0, flow_gradient leaves its sums; or NULL */
+    /* at the last sum, all circulation was shed infinitely long ago: legs reach from the tail to infinity */
+    bool is_steady;
+    const volatile sig_atomic_t *stop; /* once *stop is not 0, flow_gradient abandons its sums; or NULL */
     double t;                          /* time of the sources, s */
     unsigned long version;             /* version of the wakes from which the sources were built */
     bool has_sources;                  /* whether the sources have been placed */
@@ -72,40 +75,40 @@ struct flow {
     struct flow_class *classes; /*                                                      (n_classes) */
     int *class_of;              /* of each fish                                         (n_fish) */
 
-    /* points */
     struct range *points; /* of each fish, class after class                   (n_fish) */
     int n_points;
     int n_chunks;
     struct chunk *chunk;     /* all points in chunks for the threads               (n_chunks) */
     double *x, *y, *u, *v;   /* position, m, and velocity of the fluid, m s-1     (n_points) */
     double *u_x, *u_y, *v_x; /* gradient, after flow_gradient, s-1                 (n_points) */
-    /* div u, gradient of div u; a of the edge force, gradient of a, one component after the other       (n_points) */
+    /* div u and its gradient; a of the edge force and its gradient, one component after the other       (n_points) */
     double *div, *div_x, *div_y, *edge, *edge_gradient;
-    double *image_u, *image_v, *image_div; /* of all images, after flow_images: velocity, div u (n_points) */
+    double *image_u, *image_v, *image_div; /* velocity and div u of all images, after flow_images         (n_points) */
     double *legs[N_LEG_SUMS];              /* workspace: velocities of legs at control points (n_points) */
 
     struct flow_fish *fish; /* (n_fish) */
     int n_images;
-    struct image *image; /* of every source in the walls                               (n_images) */
+    struct image *image; /* the images of every source in the walls                     (n_images) */
 
-    /* at markers or vortices of all wakes, after flow_at_wake: velocity and div u, of all sources, of images, of the
-     * legs of the same fish; rates of labels                                                      (n_markers) */
+    /* at the markers or vortices of all wakes, after flow_at_wake: velocity and div u, those of images alone, those of
+     * the legs of the same fish alone, and rates of the labels                                 (n_markers) */
     struct range *wake_range; /* of each fish                                                  (n_fish) */
     int n_markers, wake_capacity;
     double *wake_u, *wake_v, *wake_div, *wake_image_u, *wake_image_v, *wake_image_div;
     double *wake_leg_u, *wake_leg_v, *wake_leg_div, *wake_rate;
-    bool is_in_pairs; /* wakes act on each other in pairs: no sum at wakes is by the tree */
+    bool is_in_pairs; /* wakes act on each other in pairs, because no sum at wakes goes through the tree */
 
-    /* sums of many fish by the tree: sources and targets of one sum; whether the sum of bodies or of wakes of one class
-     * or of the images at another class is by the tree, in this evaluation (2, 2, n_classes, n_classes) */
+    /* For sums over many fish by the tree: sources and targets of one sum. by_tree says, for bodies or wakes, for
+     * themselves or their images, whether the sum of one class at another goes through the tree in this evaluation (2,
+     * 2, n_classes, n_classes). */
     struct others *others; /* sums of distant sources of other fish: others.h; NULL before the first sum */
     struct tree *tree;
     struct sources many, places;
     int *by_tree;
 };
 
-/* Derivative of the velocity at the points of fish f with respect to the unknowns of fish g, column by column:
- * columns are x (N_g), y (N_g), sheet (M_g), shed (1) of fish g. */
+/* How the velocity at the points of fish f depends on the unknowns of fish g. The columns are x (N_g), y (N_g), sheet
+ * (M_g) and shed (1) of fish g. */
 struct influence_block {
     int n_points, n_columns;
     double *u, *v; /* (n_columns, n_points) */
@@ -115,103 +118,106 @@ struct influence_block {
 
 struct flow *flow_create(struct arena *arena, const struct school *school);
 
-/* Fail with STATUS_CASE if a steady wake (an equilibrium) does not reach all fish: above 1e5 depths. */
+/* Fail with STATUS_CASE if a steady wake (in an equilibrium) would have to be longer than 1e5 depths to pass all
+ * fish. */
 enum status flow_check_steady(const struct school *school);
 
 /* Number of points of a fish. */
 int flow_n_points(const struct fish *fish);
 
-/* Index, among the points of a fish, of the midpoint of an edge and of the tail. Control point c has index c. */
+/* Where the midpoint of an edge and the tail stand among the points of a fish. Control point c has index c. */
 int flow_midpoint(const struct fish *fish, int edge);
 int flow_tail(const struct fish *fish);
 
-/* Place all sources and the points of all fish at time t (at or after the event of the state) for the unknowns y. */
+/* Place all sources and the points of all fish at time t (at or after the event of the state), for the unknowns y. */
 void flow_place(struct flow *flow, const struct state *state, double t, const double *y);
 
-/* Place the released sources of all wakes at time t. */
+/* Place only what has been released, that is the wakes, at time t. */
 void flow_place_released(struct flow *flow, const struct state *state, double t);
 
 /* Whether the wakes are free sheets (shedding: sheet). */
 bool flow_has_free_sheets(const struct flow *flow);
 
-/* The square of the smoothing of a source at a target, m2, for fish or classes with the given delta and e.
- * doc/model.md, section 8. Point vortices: of the source alone. */
+/* The square of the smoothing of a source at a target, m2, where fish or classes have the given delta and e.
+ * doc/model.md, section 8. For point vortices it depends on the source alone. */
 enum flow_pair { BODY_AT_BODY, WAKE_AT_BODY, BODY_AT_WAKE, WAKE_AT_WAKE };
 double flow_square(const struct flow *flow, enum flow_pair pair, const struct flow_class *target,
                    const struct flow_class *source);
 
-/* The sources of a fish for all other targets: the body or the wake, at points or at markers, themselves or the
- * images. */
+/* The sources that a fish is for all other targets. They are either its body or its wake, at points or at markers, and
+ * either the fish itself or its images. */
 struct flow_sum {
     enum flow_pair pair;
     bool of_images;
 };
 const struct sources *flow_sources(const struct flow *flow, int g, const struct flow_sum *sum);
 
-/* The pair of these sources of fish g and targets of fish f. */
+/* The constants of the kernel for these sources of fish g and targets of fish f. */
 struct kernel_pair flow_pair_of(const struct flow *flow, int f, int g, const struct flow_sum *sum);
 
-/* Append sources with their span in the strengths. */
+/* Append sources, with the span in their strengths, so that fish of different depths can be summed together. */
 void flow_append_with_span(struct sources *many, const struct sources *sources, struct range which, double span);
 
-/* Interpolate a quantity at the nodes of fish f to the points of fish f; of_points: values at the points of all fish
+/* Interpolate a quantity from the nodes of fish f to its points; of_points holds the values at the points of all fish
  * (n_points). */
 void flow_from_nodes(const struct flow *flow, int f, const double *of_nodes, double *of_points);
 
-// ---- flow_external.c: the external flow at time t: a stream with shear and gusts. doc/model.md, sections 8 and 9.
+// ---- flow_external.c: the external flow at time t, a stream with shear and gusts. doc/model.md, sections 8 and 9.
 // Tested by tests/flow/test_flow.c.
 
-/* flow_external_gust: the part of a travelling gust; flow_external_gradient: u_x, u_y, v_x, s-1 (v_y = -u_x). */
+/* flow_external_gust gives only the travelling gust; flow_external_gradient gives u_x, u_y, v_x, s-1 (v_y = -u_x). */
 void flow_external(const struct school *school, double t, double x, double y, double *u, double *v);
 void flow_external_gust(const struct school *school, double t, double x, double y, double *u, double *v);
 void flow_external_gradient(const struct school *school, double t, double x, double y, double gradient[3]);
 
-/* Acceleration Du/Dt of a particle of the external flow at time t, uniform in space, m s-2: without a travelling gust.
- */
+/* The acceleration Du/Dt of a particle of the external flow at time t, m s-2. It is uniform in space; a travelling gust
+ * is left out. */
 void flow_external_acceleration(const struct school *school, double t, double acceleration[2]);
 
 // ---- flow_at_wake.c: the velocity of the fluid at the markers of free sheets, or at the released vortices, of all
 // fish. doc/model.md, sections 8, 9 and 18. Tested by tests/flow/test_flow.c, tests/flow/test_flow_at_markers.c.
 //
-// The velocity at markers and the force on bodies have the same sources, with the same smoothing for the same pair, so
-// that the impulse of bodies and wakes is conserved. The body that shed the markers acts on them with the tapered
-// smoothing delta(d), sheet.h; images are never tapered.
+// The velocity at markers comes from the same sources as the force on bodies, with the same smoothing for the same
+// pair. This is what conserves the impulse of bodies and wakes. The body that shed the markers acts on them with the
+// tapered smoothing delta(d) of sheet.h; images are never tapered.
 
-/* Set wake_range, wake_u, wake_v and all arrays at markers for the event of the state. */
+/* Set wake_range, wake_u, wake_v and all other arrays at markers, for the event of the state. */
 void flow_at_wake(struct flow *flow, const struct state *state);
 
 // ---- flow_leg_rate.c: the momentum that legs take because their lengths s change along a wake. doc/model.md, section
 // 18. Tested by tests/flow/test_flow_leg_rate.c.
 
-/* Set the boxes of all legs, after flow_at_wake, for flow_leg_rate. */
+/* Set the boxes of all legs, which flow_leg_rate needs; call it after flow_at_wake. */
 void flow_leg_boxes(struct flow *flow);
 
-/* Rate R at which fish f and its wake lose momentum because legs of different lengths s act on each other, over density
- * and depth, m4 s-2: x, y, about the origin, m5 s-2; rate: by the legs of all fish, image: along walls by the images of
- * legs. At the event of the state, after flow_at_wake. 0 without legs. */
+/* The rate R at which fish f and its wake lose momentum because legs of different lengths s act on each other, over
+ * density and depth, m4 s-2: x, y, and its moment about the origin, m5 s-2. rate counts the legs of all fish, image the
+ * images of legs, along walls only. At the event of the state, after flow_at_wake. 0 without legs. */
 void flow_leg_rate(const struct flow *flow, const struct state *state, int f, double rate[3], double image[3]);
 
-// ---- images.c: the images of sources in impermeable straight walls along x. doc/model.md, section 17. Tested by
-// tests/flow/test_images.c.
+// ---- images.c: walls. A straight wall along x is impermeable because every source has an image behind it.
+// doc/model.md, section 17. Tested by tests/flow/test_images.c.
 //
-// A source of strength q, d at (x, y) has in the wall y = h an image of -q, (-dx, dy) at (x, 2h - y). In a channel, h
-// < y < h + H, each image is mirrored again: images of the source itself at y + 2kH, and of the mirrored source at 2h
-// - y + 2kH, for every integer k.
+// A source of strength q, d at (x, y) has in the wall y = h an image of -q, (-dx, dy) at (x, 2h - y). In a channel, h <
+// y < h + H, each image is mirrored again, which gives images of the source itself at y + 2kH and of the mirrored
+// source at 2h - y + 2kH for every integer k.
 
-/* An image of every source: at (x, sign y + shift), with the fraction `weight` of the strength. sign = -1: mirrored in
- * a wall, with reversed circulation and reversed legs along the wall. */
+/* An image of every source, at (x, sign y + shift), with the fraction `weight` of its strength. sign = -1: mirrored in
+ * a wall, so that circulation and the legs along the wall are reversed. */
 struct image {
     double sign, shift, weight;
 };
 
-/* Set *image to the images of sources of at most this depth [m] (infinite span: 0), and return the number of images, 0
- * without walls. In a channel a Gauss rule replaces the infinite sums: the images k = 1, and all further images as
- * weighted images at nodes between the places of the images. There are 36 images for depths up to 8 H, 32 more for each
- * factor of 4, and at most 272; the error is at most 1e-8 of the velocity of a vortex at the distance H if source and
- * target are less than 6 H apart. */
+/* Set *image to the images of sources of at most this depth [m] (infinite span: 0) and return their number, which is 0
+ * without walls.
+ *
+ * In a channel a Gauss rule replaces the infinite sums: the images k = 1 stay, and all further ones are represented by
+ * weighted images at nodes between them. There are 36 images for depths up to 8 H, 32 more for each factor of 4, and at
+ * most 272. The error is at most 1e-8 of the velocity of a vortex at the distance H if source and target are less than
+ * 6 H apart. */
 int images_find(struct arena *arena, const struct walls *walls, double depth, struct image **image);
 
-/* Write all images of the sources, image after image, to *images, which is overwritten. */
+/* Write all images of the sources, image after image, to *images, replacing what it holds. */
 void images_write(const struct sources *sources, int n_images, const struct image *image, struct sources *images);
 
 #endif

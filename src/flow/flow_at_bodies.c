@@ -1,4 +1,5 @@
-/* flow_at_bodies.c: direct sums, fish by fish, in chunks of points; the tree for the other fish of large schools. */
+/* flow_at_bodies.c: sums at bodies. Every fish is a target in chunks of points; the fish itself acts by direct sums,
+ * and in large schools distant fish act by far points or by the tree. */
 #include "flow/flow_at_bodies.h"
 
 #include <math.h>
@@ -52,7 +53,7 @@ void flow_select_by_tree(struct flow *flow, bool at_wakes, const struct range *t
             at_wakes ? (i < 2 ? BODY_AT_WAKE : WAKE_AT_WAKE) : (i < 2 ? BODY_AT_BODY : WAKE_AT_BODY), i % 2};
         for (int c = 0; c < flow->n_classes; c++) {
             for (int k = 0; k < flow->n_classes; k++) {
-                // the tree includes a fish's own sources, which are then subtracted, except of wakes without legs
+                // the tree includes a fish's own sources, which are then subtracted, except in wakes without legs
                 const bool keeps_own = sum.of_images || (sum.pair == WAKE_AT_WAKE && !flow->kernel->has_legs);
                 int n_targets = 0, n_sources = 0;
                 double own = 0;
@@ -74,7 +75,7 @@ void flow_select_by_tree(struct flow *flow, bool at_wakes, const struct range *t
 void flow_sum_by_tree(struct flow *flow, int c, int k, const struct flow_sum *sum, int threads,
                       const struct targets *at) {
     const struct school *const school = flow->school;
-    int f = 0; /* the first fish of the targets: all have one length */
+    int f = 0; /* the first fish of the targets; all have one length */
     while (flow->class_of[f] != c) f++;
     const struct fish *const fish = &school->fish[f];
     struct kernel_pair pair = {0};
@@ -86,7 +87,7 @@ void flow_sum_by_tree(struct flow *flow, int c, int k, const struct flow_sum *su
         flow_append_with_span(&flow->many, sources, (struct range){0, sources->n}, pair.span);
     }
 
-    // half of wake.tolerance, in lengths per beat, shared by bodies, wakes and images
+    // half of wake.tolerance, in lengths per beat, is shared by the sums over bodies, wakes and images
     pair.span = 1;
     const int n_sums = school->walls.n > 0 ? 4 : 2;
     const double tolerance = school->wake_tolerance * fish->length * fish_rate(school, fish) / (2 * n_sums);
@@ -130,7 +131,7 @@ static struct range range_overlap(struct range one, struct range other) {
     return (struct range){first, end > first ? end - first : 0};
 }
 
-// own body and own wake
+// the velocity by its own body and its own wake
 static void induce_own(const struct flow *flow, const struct chunk *chunk, const struct targets *all,
                        bool with_gradient) {
     const struct fish *const fish = &flow->school->fish[chunk->fish];
@@ -144,7 +145,7 @@ static void induce_own(const struct flow *flow, const struct chunk *chunk, const
     const struct kernel_pair smooth = flow->kernel->own(fish->strip_depth, wake_square);
     const struct sources *const seen = &of->wake.middles.sources;
 
-    // control points: all sources of this body, and the wake of a sheet, with legs
+    // control points feel all sources of this body and, if the wake is a sheet, the wake point by point, with legs
     struct targets at = points_of(flow, all, chunk->fish, control);
     if (fish->depth_varies && control.n > 0) {
         at.edge = flow->edge + control.first;
@@ -155,7 +156,8 @@ static void induce_own(const struct flow *flow, const struct chunk *chunk, const
     kernel_induce(&exact, &of->own, (struct range){0, of->own.n}, &at);
     if (is_sheet) kernel_induce(&exact, graded, (struct range){0, graded->n}, &at);
 
-    // the middles of a sheet behind the control points, or the queue at all points; not at midpoints without own wake
+    // The middles of a sheet act on the points behind the control points, and the queue acts on all points. Midpoints
+    // of edges are left out if the fish does not feel its own wake.
     const int begin = is_sheet ? flow_midpoint(fish, 0) : 0, end = flow_midpoint(fish, 0), n = flow_n_points(fish);
     const bool is_felt = fish_feels_own_wake(fish);
     const struct range parts[2] = {{begin, (is_felt ? n : end) - begin}, {flow_tail(fish), is_felt ? 0 : 1}};
@@ -172,7 +174,7 @@ static void induce_own(const struct flow *flow, const struct chunk *chunk, const
     kernel_induce(&bound, &of->own, (struct range){0, fish->n_sheet}, &at);
 }
 
-// the near part of fish g at points of fish f
+// the near part of fish g, at points of fish f
 static void induce_near(const struct flow *flow, int f, int g, const struct targets *at) {
     const struct others_near near = others_near(flow, f, g);
     const struct sheet_points *const middles = &flow->fish[g].wake.middles;
@@ -227,7 +229,7 @@ static void flow_sum(struct flow *flow, const struct state *state, double t, con
     const double work = flow->kernel->cost * (1.0 + flow->n_images) * flow->n_points * n_sources;
     const int threads = parallel_threads(flow->school->threads, flow->n_chunks, work, PARALLEL_INTERACTIONS);
 
-    // add bodies and wakes by the tree, by far points, then one by one
+    // sum bodies and wakes by the tree, then by far points, then one by one
     const size_t size = (size_t)flow->n_points * sizeof(double);
     double *const sums[] = {flow->u, flow->v, flow->div, flow->u_x, flow->u_y, flow->v_x, flow->div_x, flow->div_y};
     for (int i = 0; i < (with_gradient ? 8 : 3); i++) memset(sums[i], 0, size);
@@ -272,7 +274,7 @@ void flow_gradient(struct flow *flow, const struct state *state, double t, const
     flow_sum(flow, state, t, y, is_steady, true);
 }
 
-// ---- images alone; any points
+// ---- images alone, and the velocity at any points
 
 void flow_images(struct flow *flow, const struct state *state) {
     const int n_fish = flow->school->n_fish;
@@ -325,7 +327,6 @@ void flow_field(struct flow *flow, const struct state *state, const struct targe
             }
         }
 
-        // beyond the walls
         double *const values[] = {at.u, at.v, at.u_x, at.u_y, at.v_x};
         for (int i = 0; i < at.n; i++) {
             if (fish_walls_distance(&school->walls, at.y[i]) >= 0) continue;
@@ -334,9 +335,9 @@ void flow_field(struct flow *flow, const struct state *state, const struct targe
     }
 }
 
-// ---- what decay has taken
+// ---- what decay has taken from the wakes of others
 
-// number of vortices or markers of a wake, the oldest ones, that have lost some strength
+// how many vortices or markers of a wake, the oldest ones, have lost some strength
 static int count_decaying(const struct wake *wake, const struct school *school, double t) {
     int n = 0;
     while (n < wake->n_vortex && wake_strength(school, t - wake->birth[n]) < 1) n++;
@@ -356,7 +357,7 @@ static bool is_near_any(const struct targets *points, int n, const double *x, co
     return false;
 }
 
-// set the sources of a wake, middles, to what they would be without decay, less what they are
+// make the sources of a wake (its middles) the difference between what they would be without decay and what they are
 static void place_decayed(struct sheet *sheet, const struct flow *flow, const struct state *state, int g) {
     struct school whole = *flow->school;
     whole.lifetime = INFINITY;
@@ -378,11 +379,11 @@ static void place_decayed(struct sheet *sheet, const struct flow *flow, const st
 
 void flow_find_decayed(struct flow *flow, const struct state *state, double *part) {
     ARENA(arena, flow->arena, "lost velocities");
-    const double near = 0.25, far = 1;  // lengths; alternating vortices farther away hardly act
+    const double near = 0.25, far = 1;  // in lengths; alternating vortices farther away hardly act
     const struct school *const school = flow->school;
     struct sheet sheet = {.arena = NULL};
     struct targets *at;
-    double *values[4]; /* velocity that is left, and that is lost */
+    double *values[4]; /* the velocity that is left, and the one that is lost */
     int *n_decaying, n_near = 0;
     NEW(arena, at, school->n_fish);
     NEW(arena, n_decaying, school->n_fish);
@@ -390,7 +391,7 @@ void flow_find_decayed(struct flow *flow, const struct state *state, double *par
     memset(part, 0, (size_t)school->n_fish * sizeof *part);
     for (int g = 0; g < school->n_fish; g++) n_decaying[g] = count_decaying(&state->wake[g], school, state->t);
 
-    // the bodies in the decaying part of the wake of another fish
+    // find the bodies in the decaying part of the wake of another fish
     flow_place(flow, state, state->t, state->y);
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
@@ -405,7 +406,7 @@ void flow_find_decayed(struct flow *flow, const struct state *state, double *par
         }
     }
 
-    // wake after wake, its velocity at these bodies
+    // sum, wake after wake, its velocity at these bodies
     for (int g = 0; g < school->n_fish && n_near > 0; g++) {
         const struct wake *const wake = &state->wake[g];
         const struct box around = box_around(wake->n_vortex, wake->x, wake->y);

@@ -1,4 +1,5 @@
-/* flow_at_wake.c: own wake in pairs, own body, other fish, images; by the tree for many markers. */
+/* flow_at_wake.c: sums at markers. Wakes act on themselves and on each other in pairs, or through the tree if they are
+ * many; then bodies and images follow. */
 #include <math.h>
 #include <string.h>
 
@@ -7,7 +8,7 @@
 
 static const double two_pi = 6.28318530717958647692;
 
-enum { MARKERS = 64 };  // markers of one fish that a thread evaluates at once
+enum { MARKERS = 64 };  // so many markers of one fish are evaluated by a thread at once
 
 static void wakes_place(struct flow *flow, const struct state *state) {
     const struct school *const school = flow->school;
@@ -37,7 +38,7 @@ static void wakes_place(struct flow *flow, const struct state *state) {
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) GROW(flow->arena, *all[i], flow->wake_capacity);
 }
 
-// the markers of a fish from first on as targets, with the velocities of all sources
+// a range of the markers of a fish as targets, with the arrays for the velocities of all sources
 static struct targets markers_of(const struct flow *flow, int f, struct range which) {
     const struct sources *const markers = &flow->fish[f].markers;
     const int first = flow->wake_range[f].first + which.first;
@@ -53,14 +54,14 @@ static struct targets markers_of(const struct flow *flow, int f, struct range wh
                             .div = flow->wake_div + first};
 }
 
-// whether a wake acts on itself like any other: with one pair of constants, and in a sum by the tree
+// whether a wake acts on itself like on any other, that is with one pair of constants and in a sum by the tree
 static bool own_is_in_tree(const struct flow *flow, int f) {
     const struct flow_sum sum = {WAKE_AT_WAKE, false};
     return !flow->kernel->has_legs && flow_is_by_tree(flow, f, f, &sum);
 }
 
-// add the velocity induced by the body that shed the markers: with the smoothing of the sheet tapered near the tail; at
-// the newborn marker the velocity is evaluated h/(2 pi) behind the tail
+// Add the velocity induced by the body that shed the markers. Near the tail its smoothing is tapered, as that of the
+// sheet. At the newborn marker the velocity is evaluated h/(2 pi) behind the tail.
 static void induce_own_body(const struct flow *flow, const struct state *state, int f, struct range which,
                             const struct targets *markers) {
     const struct fish *const fish = &flow->school->fish[f];
@@ -82,7 +83,7 @@ static void induce_own_body(const struct flow *flow, const struct state *state, 
         y[i] = markers->y[i];
         square[i] = smoothing * smoothing;
 
-        // newborn marker
+        // the newborn marker
         if (which.first + i < wake->n_vortex - 1 || fish->taper <= 0) continue;
         const double along = wake->slip[0] * direction.t[0] + wake->slip[1] * direction.t[1];
         const double behind = fmax(0, along) * flow->school->interval / two_pi;
@@ -99,7 +100,6 @@ static void induce_own_body(const struct flow *flow, const struct state *state, 
     kernel_induce(&pair, body, (struct range){0, body->n}, &at);
 }
 
-// add the velocities that the wakes of two fish cause at each other
 static void induce_pair_of_wakes(const struct flow *flow, int f, int g) {
     const struct flow_sum wake = {WAKE_AT_WAKE, false};
     struct targets at_f = markers_of(flow, f, (struct range){0, flow->wake_range[f].n});
@@ -114,7 +114,7 @@ static void induce_pair_of_wakes(const struct flow *flow, int f, int g) {
     }
 }
 
-// add the velocity of the external flow, of the body that shed the markers, and of all others
+// add the velocity of the external flow, of the body that shed the markers, and of everything else
 static void induce_at_markers(const struct flow *flow, const struct state *state, int f, struct range which) {
     const struct school *const school = flow->school;
     const int first = flow->wake_range[f].first + which.first;
@@ -131,7 +131,6 @@ static void induce_at_markers(const struct flow *flow, const struct state *state
     for (int i = 0; i < which.n; i++) at.div[i] += own.div[i];
     at.leg_u = at.leg_v = NULL;
 
-    // other fish
     for (int g = 0; g < school->n_fish; g++) {
         const struct flow_sum body = {BODY_AT_WAKE, false}, wake = {WAKE_AT_WAKE, false};
         flow_induce_other(flow, f, g, &body, g == f, &at);
@@ -140,7 +139,6 @@ static void induce_at_markers(const struct flow *flow, const struct state *state
     }
     if (school->walls.n == 0) return;
 
-    // images
     struct targets image = at;
     image.u = flow->wake_image_u + first;
     image.v = flow->wake_image_v + first;
@@ -157,7 +155,7 @@ static void induce_at_markers(const struct flow *flow, const struct state *state
     }
 }
 
-// add one sum by the tree at the markers of class c, which are not consecutive
+// add one sum by the tree at the markers of class c, which have to be gathered because they are not consecutive
 static void add_by_tree(struct flow *flow, int c, int k, const struct flow_sum *sum, int threads) {
     struct sources *const places = &flow->places;
     const int n_fish = flow->school->n_fish;
@@ -174,7 +172,7 @@ static void add_by_tree(struct flow *flow, int c, int k, const struct flow_sum *
         }
     }
 
-    // the sums take the place of the strengths
+    // the sums overwrite the strengths of the gathered markers
     const struct targets at = {.n = places->n,
                                .x = places->x,
                                .y = places->y,
@@ -212,7 +210,7 @@ void flow_at_wake(struct flow *flow, const struct state *state) {
 
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int f = 0; f < school->n_fish; f++) {
-        // set the velocity of its own wake at all markers of a fish
+        // set the velocities at all markers of a fish to those of its own wake
         if (flow->wake_range[f].n == 0) continue;
         const struct flow_class *const kind = &flow->classes[flow->class_of[f]];
         const struct kernel_pair smooth =
@@ -224,7 +222,8 @@ void flow_at_wake(struct flow *flow, const struct state *state) {
         const struct sources *const own = &flow->fish[f].markers;
         if (!own_is_in_tree(flow, f)) kernel_induce_mutual(&smooth, own, &at, own, &at);
     }
-    // without a tree wakes act on each other in pairs; in a round of a tournament no fish is in two pairs
+    // Without a tree, wakes act on each other in pairs. The pairs are the rounds of a tournament, so that no fish is in
+    // two pairs that threads evaluate at the same time.
     const int n_rounds = school->n_fish - 1 + school->n_fish % 2;
     for (int round = 0; round < n_rounds && flow->is_in_pairs; round++) {
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
@@ -258,7 +257,7 @@ void flow_at_wake(struct flow *flow, const struct state *state) {
         }
     }
 
-    // [p] = 0 on the wake
+    // the label changes so that the pressure is continuous across the wake, [p] = 0
     for (int f = 0; f < school->n_fish; f++) {
         const int first = flow->wake_range[f].first;
         const double *const label = state->wake[f].circulation;

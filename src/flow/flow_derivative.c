@@ -1,4 +1,5 @@
-/* flow_derivative.c: derivatives per source, by the strength and by the nodes that move the source. */
+/* flow_derivative.c: each source contributes by its strength, by its leg, and by the nodes that move it. Most of the
+ * code treats four sources at a time, because blocks are read and written once for all of them. */
 #include "flow/flow_derivative.h"
 
 #include <stddef.h>
@@ -6,9 +7,9 @@
 
 #include "base/wide.h"
 
-// ---- derivatives per source, by the strength, by the leg and by the nodes that move the source
+// ---- what one source contributes
 
-// derivatives at n points from first on in one column; NULL: not in the block
+// one column of a block, from point `first` on; NULL: not in the block
 struct column {
     double *u, *v, *div, *edge[2];
 };
@@ -20,14 +21,14 @@ static struct column column_of(const struct influence_block *block, int c, int f
                            {block->edge ? block->edge + at : NULL, block->edge ? block->edge + size + at : NULL}};
 }
 
-// a source of fish g at the points of fish f
+// a source of fish g, as the points of fish f see it
 struct moving {
     struct source at;
     struct kernel_pair pair;
     double image;                 // sign of the images that are summed (images.c); 0: the source itself
-    const struct stencil *place;  // nodes that move the source; follows: fraction of the motion
+    const struct stencil *place;  // the nodes that move the source, of whose motion it follows this fraction
     double follows;
-    const struct stencil *line;  // leg d = along times the vector along the body, or to the tail
+    const struct stencil *line;  // the leg is d = along times the vector along the body, or to the tail
     double along;
     bool has_edge;  // whether the source is part of the edge force
 };
@@ -39,7 +40,6 @@ static void add_spanwise(const struct column *to, int n, const struct unit_value
     }
 }
 
-// add the velocity of a leg, or of a change of a leg
 static inline __attribute__((always_inline)) void add_leg_to(const struct column *to, int n,
                                                              const struct unit_values *values, double dx, double dy,
                                                              bool has_edge) {
@@ -64,7 +64,7 @@ static WIDE(void, add_leg,
     add_leg_to(to, n, values, dx, dy, has_edge);
 }
 
-// add the change of velocity by a displacement of the source in x or y
+// add what a displacement of the source in x or y changes
 static inline __attribute__((always_inline)) void add_displacement(const struct column *to, int n,
                                                                    const struct unit_values *values,
                                                                    const struct moving *source, int in_y, double by) {
@@ -88,7 +88,7 @@ static WIDE(void, add_places,
             (const struct influence_block *block, const struct fish *other, const struct moving *source, int first,
              int n, const struct unit_values *values),
             (block, other, source, first, n, values)) {
-    // a mirror image moves opposite to the source in y, and the leg of the image moves opposite in x
+    // a mirror image moves opposite to the source in y, and its leg is opposite in x
     const double sign = source->image < 0 ? -1 : 1;
     for (int i = 0; source->place && i < source->place->n; i++) {
         const int k = source->place->node[i];
@@ -107,14 +107,14 @@ static WIDE(void, add_places,
     }
 }
 
-// context of the functions below
+// what all functions below need to know
 struct pass {
     const struct flow *flow;
     int f, g, with_places;
     const struct influence_block *block;
 };
 
-// the values of a source, or the sum of the values of all its images of one sign
+// the values of a source, or the sum over all its images of one sign
 static void unit_of(const struct pass *pass, const struct moving *source, int first, int n,
                     struct unit_values *values) {
     const struct flow *const flow = pass->flow;
@@ -140,8 +140,8 @@ static void unit_of(const struct pass *pass, const struct moving *source, int fi
     }
 }
 
-/* Up to four neighbouring sources of a body: the derivatives by a node or strength are read and written once for four.
- * Without a source the values and the weights are 0. */
+/* Up to four neighbouring sources of a body. The derivatives by a node or a strength are read and written once for all
+ * four. Where a source is missing, values and weights are 0. */
 enum { FOUR = 4 };
 struct four {
     int n;
@@ -149,21 +149,22 @@ struct four {
     _Alignas(64) struct unit_values values[FOUR];
 };
 
-/* Some columns of a block, at n_points points, and the weights of four sources in each. */
+/* Some columns of a block, each at n_points points, and the weights of the four sources in each of them. */
 enum { COLUMNS = 64 };
 struct four_weights {
     int n_points, n_columns;
-    const int *column; /* numbers of the columns; NULL: consecutive */
-    long stride;       /* distance of two columns */
+    const int *column; /* numbers of the columns; NULL: they are consecutive */
+    long stride;       /* from one column to the next */
     double of[COLUMNS][FOUR];
 };
 
-/* Eight points at any address. */
+/* Eight points at any address, in one vector. */
 enum { POINTS = 8, MOST = 5 };
 typedef double points_of_eight
     __attribute__((vector_size(POINTS * sizeof(double)), aligned(sizeof(double)), may_alias));
 
-// n groups of eight points, from the points `begin` on, stay in registers for all columns; groups may overlap
+// Groups of eight points, beginning at the points `begin`, stay in registers while all columns pass by; groups may
+// overlap.
 static inline __attribute__((always_inline)) void add_weighted_groups(int n, const int begin[MOST],
                                                                       const struct four_weights *weights, double factor,
                                                                       const double *value, long apart, double *to) {
@@ -182,8 +183,8 @@ static inline __attribute__((always_inline)) void add_weighted_groups(int n, con
     }
 }
 
-// add to all columns `factor` times the sum of weights times values of the four sources; apart: distance of the values
-// of two sources, in numbers
+// Add to all columns `factor` times the weighted sum of the values of the four sources; apart: how far the values of
+// two sources are apart, in numbers.
 static WIDE(void, add_weighted,
             (const struct four_weights *weights, double factor, const double *value, long apart, double *to),
             (weights, factor, value, apart, to)) {
@@ -197,7 +198,7 @@ static WIDE(void, add_weighted,
         }
     }
 
-    // four groups at a time; the last points are a group that overlaps the last full one
+    // four groups at a time; the points that are left form a group that overlaps the last full one
     const int n_full = n / POINTS, has_rest = n % POINTS > 0;
     for (int done = 0; done < n_full;) {
         int begin[MOST], groups = 0;
@@ -234,14 +235,13 @@ static void add_four_places(const struct influence_block *block, const struct fi
             }
         }
 
-        // places
         add_weighted(&by, -1, v->u_x, apart, x.u);
         add_weighted(&by, -1, v->v_x, apart, x.v);
         add_weighted(&by, -sign, v->u_y, apart, y.u);
         add_weighted(&by, -sign, v->v_y, apart, y.v);
         if (!source[0].line) continue;
 
-        // legs; without legs div is 0
+        // the legs; without them div is 0
         add_weighted(&along, sign, v->leg, apart, x.v);
         add_weighted(&along, -1, v->leg, apart, y.u);
         if (!block->div) continue;
@@ -252,9 +252,9 @@ static void add_four_places(const struct influence_block *block, const struct fi
     }
 }
 
-// add the velocity of four control points by the strengths of all bound vortices, from column `strength` on; around,
-// before: circulation of the interval (NULL: none) and before the point (NULL: no legs), per circulation; line: of the
-// points
+// Add the velocity of four control points by the strengths of all bound vortices, from column `strength` on. Per
+// circulation of a vortex, `around` is the circulation of the interval (NULL: none) and `before` the one before the
+// point (NULL: there are no legs). line: of the four points.
 static void add_four_strengths(const struct influence_block *block, const struct fish *fish, int strength, int first,
                                int n, const struct four *four, const double *around, const double *before,
                                double *const line[2], bool has_edge) {
@@ -262,7 +262,7 @@ static void add_four_strengths(const struct influence_block *block, const struct
     const struct unit_values *const v = four->values;
     const long apart = sizeof *v / sizeof(double);
 
-    // the legs of unit circulation
+    // the legs of a unit circulation
     double u[FOUR][KERNEL_CHUNK] = {{0}}, w[FOUR][KERNEL_CHUNK] = {{0}}, div[FOUR][KERNEL_CHUNK] = {{0}};
     double dx[FOUR] = {0}, dy[FOUR] = {0};
     for (int k = 0; k < four->n && before; k++) {
@@ -309,10 +309,10 @@ static void add_four_strengths(const struct influence_block *block, const struct
     }
 }
 
-// add the derivatives by places
+// add the derivatives by places for the sources gathered so far
 static void four_finish(struct four *four, const struct influence_block *block, const struct fish *other, int first,
                         int n) {
-    // together: the sources move with the same nodes, without a part in the edge force
+    // together: all of them move with the same nodes, and none is part of the edge force
     const struct stencil *const place = four->source[0].place, *const line = four->source[0].line;
     bool together = !(block->edge && four->source[0].has_edge);
     for (int k = 0; k < four->n; k++) {
@@ -326,7 +326,6 @@ static void four_finish(struct four *four, const struct influence_block *block, 
     }
 }
 
-// bound vortices of a fish at a range of its points
 static void derive_bound(const struct pass *pass, struct range points, const struct kernel_pair *pair) {
     const struct fish *const fish = &pass->flow->school->fish[pass->g];
     const struct sources *const own = &pass->flow->fish[pass->g].own;
@@ -353,7 +352,8 @@ static void derive_bound(const struct pass *pass, struct range points, const str
     }
 }
 
-// the body of fish g at a range of the points of fish f: only legs in its own strip, else the whole sources
+// the body of fish g at a range of the points of fish f; in its own strip only the legs, because derive_bound has the
+// rest
 static void derive_body(const struct pass *pass, struct range points, const struct kernel_pair *pair, double image) {
     const struct fish *const fish = &pass->flow->school->fish[pass->g];
     const struct flow_fish *const of = &pass->flow->fish[pass->g];
@@ -394,7 +394,6 @@ static void derive_body(const struct pass *pass, struct range points, const stru
             }
             if (four.n < FOUR && c < of->body.n - 1) continue;
 
-            // by the strengths of the bound vortices, and by places
             const int begin = c - k;
             if (fish->integrals) {
                 double *const line[2] = {has_legs ? of->line[0] + begin : NULL, has_legs ? of->line[1] + begin : NULL};
@@ -441,8 +440,9 @@ static void derive_steady_legs(const struct pass *pass, const struct sheet_point
     }
 }
 
-// add the derivatives by one node of fish, for an end of a stretch that moves by the vector `moves` per displacement of
-// the node along the vector `way`; the source follows the fraction xi of the motion, the leg -source->along times it
+// Add the derivatives by one node of fish, for an end of a stretch that moves by the vector `moves` if the node moves
+// by one along the vector `way`. The source follows the fraction xi of this motion, and its leg -source->along times
+// it.
 static void add_push(const struct influence_block *block, const struct fish *fish, int node, const double moves[2],
                      const double way[2], double weight, const struct moving *source, double xi, int first, int n,
                      const struct unit_values *values) {
@@ -455,7 +455,7 @@ static void add_push(const struct influence_block *block, const struct fish *fis
     }
 }
 
-// add the derivatives of a nascent point by the older end of an overtaken stretch: free_sheet.h
+// add the derivatives of a nascent point by the older end of a stretch that the tail has overtaken (wake/sheet.h)
 static void add_overtaken(const struct influence_block *block, const struct fish *fish, const struct nascent_end *end,
                           const struct moving *source, double xi, int first, int n, const struct unit_values *values) {
     const struct stencil *const parts[2] = {&fish->tail_tangent.from, &fish->tail_tangent.to};
@@ -469,7 +469,7 @@ static void add_overtaken(const struct influence_block *block, const struct fish
     }
 }
 
-// the nascent points of one view of the wake of fish g at a range of the points of fish f
+// the nascent points of one view of the wake of fish g, at a range of the points of fish f
 static void derive_nascent(const struct pass *pass, const struct sheet_points *sheet, struct range points,
                            const struct kernel_pair *pair, double image) {
     const struct flow *const flow = pass->flow;
@@ -491,7 +491,7 @@ static void derive_nascent(const struct pass *pass, const struct sheet_points *s
             const struct sources *const sources = &sheet->sources;
             const int i = n_released + k;
             const double xi = sheet->xi[i], part = sheet->part[i];
-            // C part; the circulation of the stretch is q/part
+            // C part, where the circulation of the stretch is q/part
             const double along = -(shed - xi * sources->q[i] / part) * part;
 
             const struct moving source = {.at = {.x = sources->x[i],
@@ -522,7 +522,7 @@ static void derive_nascent(const struct pass *pass, const struct sheet_points *s
     }
 }
 
-// add the derivatives by the motion of the points of fish f in the field of all sources
+// add what changes because the points of fish f move in the field of all sources
 static void derive_points(const struct flow *flow, int f, const struct influence_block *block) {
     const struct fish *const fish = &flow->school->fish[f];
     for (int p = 0; p < block->n_points; p++) {
@@ -601,13 +601,12 @@ void flow_derivative(const struct flow *flow, int f, int g, enum flow_columns co
         derive_nascent(&pass, &sheet->middles, all, &wake, 0);
     }
 
-    // images: mirrored in a wall, and in a channel shifted
+    // images in each wall: mirrored ones, and in a channel also shifted ones
     for (int i = 0; i < flow->school->walls.n; i++) {
         const double sign = i == 0 ? -1 : 1;
         if (!nascent) derive_body(&pass, all, &body, sign);
         derive_nascent(&pass, &sheet->middles, all, &wake, sign);
     }
 
-    // the points of a fish move with its nodes in the field of all sources
     if (with_places && f == g) derive_points(flow, f, block);
 }

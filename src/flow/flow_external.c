@@ -1,12 +1,12 @@
-/* flow_external.c: the stream with shear, and gusts. */
+/* flow_external.c: the stream with its shear, and gusts. */
 #include <math.h>
 
 #include "base/mathematics.h"
 #include "flow/flow.h"
 
-// velocity of a travelling gust over the amplitude, and the derivative along the direction of travel, m-1
+// the velocity of a travelling gust over its amplitude, and the derivative of this along the direction of travel, m-1
 static double gust_shape(const struct school *school, double t, double x, double y, double *slope) {
-    // distance ahead of the point of the gust that was at gust_position at the start
+    // how far ahead of the point of the gust that was at gust_position at the start
     const double along = school->gust_along[0] * x + school->gust_along[1] * y;
     const double ahead = along - school->gust_position - school->gust_speed * t;
     const double number = school->gust_number, distance = school->gust_gradient_distance;

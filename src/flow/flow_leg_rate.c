@@ -1,6 +1,6 @@
-/* flow_leg_rate.c: the momentum that legs take because their lengths s and half spans b change along a strip. Own legs:
- * the sums at control points and markers; other fish and images: the same after integration by parts, without far
- * legs. */
+/* flow_leg_rate.c: the momentum that legs take because their lengths s and half spans b change along a strip. The
+ * fish's own legs are summed at control points and markers. For other fish and images the same rate is integrated by
+ * parts, which concentrates it where s or b change, and far legs are left out. */
 #include <math.h>
 #include <string.h>
 
@@ -8,14 +8,15 @@
 #include "flow/flow.h"
 
 enum {
-    TARGETS = 64,  // changes of one fish that are summed at once
+    TARGETS = 64,  // so many changes of one fish are summed at once
     CHUNK = 64     // markers in one box
 };
 
-/* Beyond this many depths the legs of others act on the changes of s by less than 1e-4 of those nearby: T^(-5/2). */
+/* Beyond this many depths the legs of others act on the changes of s by less than 1e-4 of what those nearby do, because
+ * the kernel falls as T^(-5/2). */
 static const double reach = 5;
 
-/* A part of s at full length below which a change does not count. */
+/* A change of s by less than this fraction of its full size is ignored. */
 static const double least_change = 1e-6;
 
 /* Places where b^2/2 and s of a strip change along its line, each with the circulation C there times the change. */
@@ -26,7 +27,7 @@ struct changes {
 
 // ---- own legs
 
-// add the momentum rate of sources in the velocity of legs: sum of q E3 u + div E3 d, and its moment
+// Add the rate of momentum of sources in the velocity of legs, sum of q E3 u + div E3 d, and its moment.
 static void add_rate(const struct sources *sources, const double *u, const double *v, const double *div,
                      double rate[3]) {
     for (int i = 0; i < sources->n; i++) {
@@ -38,7 +39,7 @@ static void add_rate(const struct sources *sources, const double *u, const doubl
     }
 }
 
-// circulation of the strip at a control point times the change of b^2/2
+// the circulation of the strip at a control point times the change of b^2/2 there
 static double body_change(const struct flow *flow, int f, int c) {
     const struct fish *const fish = &flow->school->fish[f];
     const struct flow_fish *const of = &flow->fish[f];
@@ -54,7 +55,7 @@ static void add_own(const struct flow *flow, int f, double rate[3]) {
     const struct kernel_pair exact = flow->kernel->own(fish->strip_depth, 0);
     const int wake = flow->wake_range[f].first, n = fish->n_control;
 
-    // u and v contain all parts; only the parts of the legs are used
+    // u and v receive all parts, but only the parts of the legs are used
     double *sum[N_LEG_SUMS];
     for (int i = 0; i < N_LEG_SUMS; i++) {
         sum[i] = flow->legs[i] + flow->points[f].first;
@@ -76,7 +77,7 @@ static void add_own(const struct flow *flow, int f, double rate[3]) {
     add_rate(&of->body, at.leg_u, at.leg_v, at.div, rate);
     add_rate(&of->markers, flow->wake_leg_u + wake, flow->wake_leg_v + wake, flow->wake_leg_div + wake, rate);
 
-    // exclude the force along the side edges, which acts on the body
+    // leave out the force along the side edges, which acts on the body
     for (int c = 0; c < n && fish->depth_varies; c++) {
         const double change = body_change(flow, f, c);
         rate[0] -= change * sum[5][c];
@@ -111,7 +112,8 @@ static struct box image_of(struct box box, const struct image *image) {
     return box;
 }
 
-/* Add the edge field of the legs of fish g nearer than the reach, themselves (image -1) or an image. */
+/* Add the edge field of those legs of fish g that are within the reach, of the fish itself (image -1) or of an
+ * image. */
 static void add_legs_of(const struct flow *flow, int g, int image, double depth, const struct box *around,
                         const struct targets *at) {
     const struct flow_fish *const from = &flow->fish[g];
@@ -153,7 +155,7 @@ static void add_changes(const struct flow *flow, int f, const struct changes *ch
         rate[0] += x;
         rate[1] += y;
         rate[2] += changes->x[i] * y - changes->y[i] * x;
-        // a wall without friction pushes across itself
+        // a wall without friction pushes only across itself
         image[0] += along;
         image[2] -= changes->y[i] * along;
     }
@@ -173,7 +175,7 @@ static void add_of_others(const struct flow *flow, const struct state *state, in
         const struct sources *const from = i < 0 ? &of->body : markers;
         const int at = i < 0 ? i + n_body : i, to = changes.n;
         if (i < 0) {
-            // b of targets outside the strip is twice as large
+            // for targets outside the strip b is twice as large
             changes.change[to] = 4 * body_change(flow, f, at);
         } else {
             const double growth = sheet_change(&of->wake, wake, i, markers->leg);

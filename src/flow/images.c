@@ -1,4 +1,4 @@
-/* images.c: the images of a wall, and Gauss rules in place of the infinite sums of a channel. */
+/* images.c: one image for a single wall, and Gauss rules that replace the infinite sums of images in a channel. */
 #include <string.h>
 
 #include "base/mathematics.h"
@@ -12,13 +12,14 @@ enum {
     RULE_REST = 4     // nodes of the integral beyond the last term
 };
 
-/* Nodes between the terms, and weights, of a sum over k. */
+/* Nodes, which lie between the terms of a sum over k, and their weights. */
 struct rule {
     int n;
     double node[(RULE_PANELS + 2) * RULE_NODES], weight[(RULE_PANELS + 2) * RULE_NODES];
 };
 
-// depth: in channel widths. Between the distances H and w an image acts like a point vortex, beyond w like a ring
+// depth: in channel widths. At distances between H and w an image acts like a point vortex, beyond w like a ring, so a
+// deeper fish needs more panels.
 static struct rule rule_of_channel(struct arena *arena, double depth) {
     int n_panels = 0, first = 1;
     for (; n_panels < RULE_PANELS && first < depth / 8; n_panels++) first *= 4;
@@ -27,7 +28,7 @@ static struct rule rule_of_channel(struct arena *arena, double depth) {
     double *scratch;
     NEW(arena, scratch, 4 * (last + RULE_REST));
 
-    // panels of the terms from < k <= 4 from: the terms, or the Gauss rule of the sum
+    // panels of the terms from < k <= 4 from; a panel of many terms is replaced by the Gauss rule of its sum
     for (int i = 0, from = 1; i < n_panels; i++, from *= 4) {
         const int n = 3 * from;
         double *const k = scratch, *const weight = scratch + n;
@@ -45,7 +46,8 @@ static struct rule rule_of_channel(struct arena *arena, double depth) {
         rule.n += n > RULE_NODES ? RULE_NODES : n;
     }
 
-    // all terms k > first, by the Gauss rule of sum (first/k)^2 f(first/k); the terms beyond last by an integral
+    // all terms k > first, by the Gauss rule of the sum over (first/k)^2 f(first/k); terms beyond last become an
+    // integral
     const int n = last - first + RULE_REST;
     double *const t = scratch, *const weight = scratch + n, top = first / (last + 0.5);
     quadrature_legendre(RULE_REST, t, weight);
@@ -84,7 +86,7 @@ int images_find(struct arena *arena, const struct walls *walls, double depth, st
 
     if (walls->n == 1) **image = (struct image){-1, 2 * walls->y[0], 1};
     for (int i = 0; i < rule.n; i++) {
-        // symmetric about the middle of the channel
+        // the images are symmetric about the middle of the channel
         const double sum = walls->y[0] + walls->y[1], shift = 2 * rule.node[i] * width, weight = rule.weight[i];
         struct image *const to = *image + 4L * i;
         to[0] = (struct image){-1, sum - (shift - width), weight};

@@ -1,4 +1,4 @@
-/* tree_boxes.c: boxes are halved across the longer side, at the median. */
+/* tree_boxes.c: each box is halved across its longer side, at the median. */
 #include "flow/tree_boxes.h"
 
 #include <math.h>
@@ -11,8 +11,8 @@ struct tree_point {
     int index;
 };
 
-// Reorder the points around the middle (quickselect): along one axis, points before the middle are not greater, points
-// after the middle not less.
+// Reorder the points around the middle one along an axis (quickselect): those before it are not greater, those after it
+// not less.
 static void points_halve(struct tree_point *point, int n, int middle, int axis) {
     int low = 0, high = n - 1;
     while (low < high) {
@@ -37,8 +37,8 @@ static void points_halve(struct tree_point *point, int n, int middle, int axis) 
     }
 }
 
-// Find the circle around the smallest rectangle of the points of box i, and halve the box across the longer side of the
-// rectangle unless is_leaf. Only the points and the halves of box i change.
+// Find the circle around the smallest rectangle of the points of box i. Unless it is a leaf, halve the box across the
+// longer side of the rectangle. Nothing but the points and the halves of box i changes, so threads can divide a level.
 static void box_divide(struct tree_boxes *boxes, int i, bool is_leaf) {
     struct tree_box *const box = &boxes->box[i];
     struct tree_point *const point = boxes->work + box->first;
@@ -60,7 +60,7 @@ static void box_divide(struct tree_boxes *boxes, int i, bool is_leaf) {
         square = distance > square ? distance : square;
     }
 
-    // expansions divide by the radius even if all points coincide
+    // the radius is a divisor, so it must not be 0 even if all points coincide
     box->radius = fmax(sqrt(square), 1e-100);
     if (is_leaf) return;
 
@@ -72,7 +72,6 @@ static void box_divide(struct tree_boxes *boxes, int i, bool is_leaf) {
 
 void tree_boxes_fill(struct tree_boxes *boxes, int n, const double *x, const double *y, const double *weight, int leaf,
                      int threads) {
-    // halve until a leaf has at most `leaf` points
     int depth = 0;
     while ((n + (1 << depth) - 1) >> depth > leaf) depth++;
     const int n_boxes = n > 0 ? tree_boxes_level(depth + 1) : 0;

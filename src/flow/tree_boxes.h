@@ -1,7 +1,7 @@
-/* tree_boxes.h: points sorted into nested boxes; each box is halved at the median point. Part of tree.h.
- * Tested by tests/flow/test_tree_boxes.c.
+/* tree_boxes.h: sorts points into nested boxes, each of which is halved at the median point. Part of tree.h. Tested by
+ * tests/flow/test_tree_boxes.c.
  *
- * Boxes are numbered from the largest down; 1 and 2 are the halves of 0, box i has the halves 2 i + 1 and 2 i + 2:
+ * Boxes are numbered from the largest down. 1 and 2 are the halves of 0, and box i has the halves 2 i + 1 and 2 i + 2:
  *
  *     level 0                  0
  *     level 1          1               2           all boxes of a level hold the same number of points, or one more
@@ -13,7 +13,7 @@
 
 #include "base/arena.h"
 
-/* A circle around n sorted points, from first on. */
+/* A circle around n consecutive sorted points. */
 struct tree_box {
     int first, n;
     double x, y, radius; /* radius > 0 */
@@ -23,7 +23,7 @@ struct tree_boxes {
     struct arena *arena;
     int n, depth, n_boxes;   /* n_boxes = 2^(depth + 1) - 1; 0 if n = 0 */
     struct tree_box *box;    /*                                          (n_boxes) */
-    int *index;              /* of each sorted point in the caller's arrays    (n) */
+    int *index;              /* where each sorted point stands in the caller's arrays  (n) */
     double *x, *y, *weight;  /* sorted                                         (n) */
     struct tree_point *work; /*                                                (n) */
     int capacity, box_capacity;
@@ -34,8 +34,8 @@ static inline int tree_boxes_level(int level) {
     return (1 << level) - 1;
 }
 
-/* Sort n points with weights (NULL: all 0) into boxes; leaves hold at most leaf points. The memory is kept for the next
- * call. The boxes do not depend on the number of threads. */
+/* Sort n points with weights (NULL: all 0) into boxes, until leaves hold at most leaf points. The memory is kept for
+ * the next call. The boxes do not depend on the number of threads. */
 void tree_boxes_fill(struct tree_boxes *boxes, int n, const double *x, const double *y, const double *weight, int leaf,
                      int threads);
 
