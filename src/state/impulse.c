@@ -20,22 +20,45 @@ void impulse_add_stretch(struct impulse_moments *sum, double circulation, const 
 /* Besides the fractions of an interval: without decay; no wake. */
 static const double undecayed = -1, none = -2;
 
-/* The circulations that stretch j gives to its markers at the time t + tau, decayed up to the fraction q. */
-static void stretch_circulations(const struct wake *wake, const struct school *school, int j,
-                                 const struct stretch_form *form, double t, double tau, double q,
+/* The markers around a stretch at one time, at index i % STRETCH_MARKERS: a pass from the oldest stretch to the newest
+ * evaluates each marker once. The parts of labels and markers that remain are at the fractions q[0] and, of a change,
+ * q[1] of the interval; without decay they are 1. */
+struct window {
+    int next; /* the first marker that is not in the window yet */
+    double label[STRETCH_MARKERS], place[STRETCH_MARKERS][2];
+    double part_of_label[2][STRETCH_MARKERS], part_of_marker[2][STRETCH_MARKERS];
+};
+
+static void window_move(struct window *window, const struct wake *wake, const struct school *school, int end, double t,
+                        double tau, const double q[2]) {
+    for (; window->next < end; window->next++) {
+        const int i = window->next, k = i % STRETCH_MARKERS;
+        window->label[k] = wake_label(wake, i, school->interval, tau);
+        wake_marker(wake, i, school->interval, tau, window->place[k]);
+        for (int side = 0; side < 2 && q[side] > none; side++) {
+            const bool decays = q[side] >= 0;
+            window->part_of_label[side][k] = decays ? wake_part_of_label(wake, school, t, q[side], i) : 1;
+            window->part_of_marker[side][k] = decays ? wake_part_of_marker(wake, school, t, q[side], i) : 1;
+        }
+    }
+}
+
+/* The circulations that stretch j gives to its markers, with what remains on one side of the window. */
+static void stretch_circulations(const struct window *window, const struct wake *wake, const struct school *school,
+                                 int j, const struct stretch_form *form, double t, double q, int side,
                                  double sum[STRETCH_MARKERS]) {
+    const bool is_young = j >= wake->n_old;
+    const double part_of_stretch = is_young && q >= 0 ? wake_part_of_stretch(wake, school, t, q, j) : 1;
     double label[STRETCH_MARKERS];
     for (int b = 0; b < form->n; b++) {
-        const int i = form->first + b;
-        label[b] = wake_label(wake, i, school->interval, tau);
-        if (q >= 0) label[b] *= wake_part_of_label(wake, school, t, q, i);
+        const int k = (form->first + b) % STRETCH_MARKERS;
+        label[b] = window->label[k] * window->part_of_label[side][k];
     }
     for (int a = 0; a < form->n; a++) {
         sum[a] = 0;
         for (int b = 0; b < form->n; b++) sum[a] += form->part[a][b] * label[b];
-        if (q < 0) continue;
-        sum[a] *= j < wake->n_old ? wake_part_of_marker(wake, school, t, q, form->first + a)
-                                  : wake_part_of_stretch(wake, school, t, q, j);
+        const int k = (form->first + a) % STRETCH_MARKERS;
+        sum[a] *= is_young ? part_of_stretch : window->part_of_marker[side][k];
     }
 }
 
@@ -45,15 +68,16 @@ static void impulse_add_wake(struct impulse_moments *sum, const struct wake *wak
                              double t, double tau, double q, double less_q, double factor) {
     const bool is_change = less_q > none;
     struct stretch_form form = {.n = 0};
+    struct window window = {.next = 0};
     for (int j = 0; j < wake_n_sources(wake); j++) {
         // what does not decay does not change: nothing from the oldest marker of this stretch on
         const int oldest = wake->has_markers && j > 0 ? j - 1 : j;
         if (is_change && !(wake_strength_within(school, t - wake->birth[oldest], 1) < 1)) return;
 
-        double at[2];
         if (!wake->has_markers) {
             const double part = q >= 0 ? wake_part_of_label(wake, school, t, q, j) : 1;
             const double less = less_q >= 0 ? wake_part_of_label(wake, school, t, less_q, j) : 0;
+            double at[2];
             wake_marker(wake, j, school->interval, tau, at);
             impulse_add(sum, factor * (part - less) * wake->circulation[j], at[0], at[1]);
             continue;
@@ -61,10 +85,11 @@ static void impulse_add_wake(struct impulse_moments *sum, const struct wake *wak
 
         double strength[STRETCH_MARKERS], less[STRETCH_MARKERS] = {0};
         stretch_set_form(&form, wake, school, j);
-        stretch_circulations(wake, school, j, &form, t, tau, q, strength);
-        if (is_change) stretch_circulations(wake, school, j, &form, t, tau, less_q, less);
+        window_move(&window, wake, school, form.first + form.n, t, tau, (const double[]){q, less_q});
+        stretch_circulations(&window, wake, school, j, &form, t, q, 0, strength);
+        if (is_change) stretch_circulations(&window, wake, school, j, &form, t, less_q, 1, less);
         for (int a = 0; a < form.n; a++) {
-            wake_marker(wake, form.first + a, school->interval, tau, at);
+            const double *const at = window.place[(form.first + a) % STRETCH_MARKERS];
             impulse_add(sum, factor * (strength[a] - less[a]), at[0], at[1]);
         }
     }
