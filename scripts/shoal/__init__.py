@@ -38,14 +38,17 @@ from . import _library
 from ._environments import SchoolEnv, SwimEnv, SwimVectorEnv
 from ._library import CaseError, Error, FileError, SolverError, version
 from ._program import (
-    CaseWarning, Check, Estimate, Page, Steady, animate, check, compare, error, export, field, gather, keys, resume, steady, study, view,
+    CaseWarning, Check, Estimate, Page, Steady, animate, check, compare, error, export, field, gather, keys, resume, steady,
+    study, view,
 )
 from ._results import grid, open, periods  # noqa: A004 - shoal.open, as gzip.open
 from ._run import Run, Variable, load, run, variables
 
-__all__ = ["run", "resume", "steady", "study", "gather", "error", "compare", "check", "keys", "view", "animate", "field", "export",
-           "open", "grid", "periods", "load", "variables", "version", "Run", "Variable", "Check", "Steady", "Estimate", "Page", "SwimEnv", "SwimVectorEnv", "SchoolEnv", "Error", "CaseError", "FileError",
-           "SolverError", "CaseWarning", "__version__"]
+# Not __all__: help(shoal) would then print all classes with what they inherit, thousands of lines.
+_PUBLIC = ["run", "resume", "steady", "study", "gather", "error", "compare", "check", "keys", "view", "animate", "field",
+           "export", "open", "grid", "periods", "load", "variables", "version", "Run", "Variable", "Check", "Steady",
+           "Estimate", "Page", "SwimEnv", "SwimVectorEnv", "SchoolEnv", "Error", "CaseError", "FileError", "SolverError",
+           "CaseWarning", "__version__"]
 
 
 def _version():
@@ -68,4 +71,4 @@ def __getattr__(name):
 
 
 def __dir__():
-    return sorted([*__all__, "plot"])
+    return sorted([*_PUBLIC, "plot"])

@@ -10,6 +10,7 @@ import multiprocessing
 import os
 import pathlib
 import pickle
+import pydoc
 import re
 import signal
 import subprocess
@@ -422,8 +423,13 @@ class Words(unittest.TestCase):
         self.assertIn("com_velocity", run._ipython_key_completions_())
         self.assertLessEqual({"Run", "check", "steady", "study", "open", "plot"}, set(dir(shoal)))
 
+    def test_help_is_the_table_of_functions_on_a_few_screens(self):
+        lines = pydoc.plain(pydoc.render_doc(shoal)).splitlines()
+        self.assertLess(len(lines), 100)
+        self.assertIn("steady(case)", "\n".join(lines[:20]))
+
     def test_every_public_name_has_types_and_a_docstring(self):
-        for name in shoal.__all__:
+        for name in dir(shoal):
             thing = getattr(shoal, name)
             if name == "__version__":
                 continue
@@ -674,7 +680,7 @@ class Programs(unittest.TestCase):
         self.assertIn("speed", {variable["name"] for variable in shoal.keys("speed", output=True)})
         self.assertEqual(dir(shoal.plot), ["field", "forces", "gait", "pressure", "school", "study", "swim", "time"])
         self.assertFalse(hasattr(shoal, "simulate"))
-        for name in shoal.__all__:
+        for name in dir(shoal):
             self.assertTrue(getattr(shoal, name).__doc__ or name == "__version__", name)
 
     def test_a_sweep_is_a_grid(self):
