@@ -1,4 +1,4 @@
-/* main.c: select the command; print errors (no other module does). */
+/* main.c: finds the command and calls it. No other file prints errors. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* main_case.c: show cases and results, list keys and variables. */
+/* main_case.c: the commands that show something without computing it: show, new, keys and info. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

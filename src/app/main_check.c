@@ -1,4 +1,4 @@
-/* main_check.c: shoal check: the warnings of a run at its start, its first events, and an estimate of its cost. */
+/* main_check.c: shoal check runs the first events of a case and reports its warnings and an estimate of its cost. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>

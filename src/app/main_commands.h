@@ -1,4 +1,4 @@
-/* main_commands.h: the commands of the program. Each command gets the parsed command line, prints results to stdout and
+/* main_commands.h: the commands of the program. Each of them gets the parsed command line, prints results to stdout and
  * progress to stderr, and can fail with any status. Tested by tests/app/test_command.sh and tests/study.
  *
  *     main_run.c      run, resume, demo, steady

@@ -1,4 +1,5 @@
-/* main_options.c: the options of the commands. */
+/* main_options.c: the options of the commands. One table drives parsing, the help texts, and the description from which
+ * manual and completion are made. */
 #include "app/main_options.h"
 
 #include <getopt.h>

@@ -1,4 +1,4 @@
-/* main_options.h: arguments and options of the commands, and the help texts. Tested by
+/* main_options.h: the arguments and options of the commands, and their help texts. Tested by
  * tests/app/test_command.sh. */
 #ifndef MAIN_OPTIONS_H
 #define MAIN_OPTIONS_H

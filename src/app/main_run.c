@@ -1,4 +1,4 @@
-/* main_run.c: commands that make one result: shoal run, resume, demo and steady. */
+/* main_run.c: the commands that make one result: shoal run, resume, demo and steady. */
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* main_signals.c: the handler stores the signal number; the integration polls the number. */
+/* main_signals.c: a signal only stores its number; the integration asks for it and stops with a checkpoint. */
 #include <fcntl.h>
 #include <math.h>
 #include <poll.h>

@@ -1,4 +1,4 @@
-/* main_study.c: shoal study, error, gather and compare: many runs of one case. */
+/* main_study.c: the commands for many runs of one case: shoal study, error, gather and compare. */
 #include <errno.h>
 #include <limits.h>
 #include <math.h>

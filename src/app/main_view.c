@@ -1,4 +1,5 @@
-/* main_view.c: shoal view, export and field: results for other programs, and the flow of a result on a grid. */
+/* main_view.c: the commands for looking at a result: shoal view and export for other programs, field for the flow on a
+ * grid. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,5 +1,5 @@
-/* say.h: printing without control characters, which file names and the contents of files can have; progress lines.
- * Tested by tests/app/test_exits.sh and tests/app/test_command.sh. */
+/* say.h: prints text that may contain names of files or parts of them without their control characters, and lines of
+ * progress. Tested by tests/app/test_exits.sh and tests/app/test_command.sh. */
 #ifndef SAY_H
 #define SAY_H
 

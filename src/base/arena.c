@@ -1,4 +1,5 @@
-/* arena.c: a ring of pieces of the C library's allocator, so that sanitizers see every piece. */
+/* arena.c: an arena is a ring of pieces, each from the allocator of the C library, so that sanitizers see every
+ * piece. */
 #include "base/arena.h"
 
 #include <assert.h>

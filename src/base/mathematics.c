@@ -1,4 +1,4 @@
-/* mathematics.c: angles, smooth ramps, quadrature, boxes. */
+/* mathematics.c: small functions on numbers that several folders share. */
 #include "base/mathematics.h"
 
 #include <math.h>

@@ -1,4 +1,5 @@
-/* mathematics.h: angles, smooth ramps, quadrature, boxes. Tested by tests/base/test_mathematics.c. */
+/* mathematics.h: small functions on numbers that several folders share: angles, smooth ramps, quadrature, boxes. Tested
+ * by tests/base/test_mathematics.c. */
 #ifndef MATHEMATICS_H
 #define MATHEMATICS_H
 

@@ -1,4 +1,4 @@
-/* methods.c: the table of methods, and the tableaux of the Runge-Kutta methods. */
+/* methods.c: the table of the integration methods, and the tableaux of the Runge-Kutta methods among them. */
 #include "base/methods.h"
 
 #include <stddef.h>

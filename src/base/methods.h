@@ -1,6 +1,6 @@
-/* methods.h: the integration methods: the words of solver.method, what each method can do, and the coefficients of the
- * Runge-Kutta methods. Used by the reader of cases, the integrators and the list of methods. Tested by
- * tests/base/test_methods.c. */
+/* methods.h: the integration methods: their words in solver.method, what each of them can do, and the coefficients of
+ * the Runge-Kutta methods. The reader of cases, the integrators and the list for users all take them from this table.
+ * Tested by tests/base/test_methods.c. */
 #ifndef METHODS_H
 #define METHODS_H
 

@@ -1,4 +1,4 @@
-/* parallel.c: the start of threads; a clock. */
+/* parallel.c: how threads start, and the clocks. */
 #include "base/parallel.h"
 
 #include <errno.h>

@@ -1,10 +1,10 @@
-/* parallel.h: distribution of a loop among threads, and clocks. Results are independent of the number of threads: every
- * sum belongs to one chunk, and the chunks depend on the length of the loop alone. Tested by
+/* parallel.h: distributes a loop among threads, and reads clocks. Results do not depend on the number of threads,
+ * because every sum belongs to one chunk and the chunks depend only on the length of the loop. Tested by
  * tests/base/test_parallel.c.
  *
- * A parallel region of one thread still wakes the threads that wait at its end, with a system call of up to a
- * microsecond, also with an if clause (libgomp 12). Regions of every step, residual or Jacobian are therefore entered
- * with several threads only:
+ * At its end even a parallel region of one thread wakes the threads that wait, with a system call of up to a
+ * microsecond; an if clause does not help (libgomp 12). Regions that are entered in every step, residual or Jacobian
+ * are therefore skipped if there is only one thread:
  *
  *     if (threads == 1) {
  *         for (int f = 0; f < n_fish; f++) evaluate_fish(residual, f, t, y);

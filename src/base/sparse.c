@@ -1,4 +1,4 @@
-/* sparse.c: the order of additions is recorded once and replayed afterwards. */
+/* sparse.c: records the order of additions in the first pass and replays it in all later ones. */
 #include "base/sparse.h"
 
 #include <string.h>

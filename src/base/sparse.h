@@ -1,12 +1,11 @@
-/* sparse.h: a square sparse matrix that is filled by adding values in a fixed order. Tested by
- * tests/base/test_sparse.c.
+/* sparse.h: a square sparse matrix that is filled by adding values, always in the same order. This makes filling it as
+ * fast as filling an array: nobody searches for a row. Tested by tests/base/test_sparse.c.
  *
- * The first pass after sparse_forget records the row and column of every addition; sparse_end builds the compressed
- * columns from the record. Later passes replay the record: the i-th addition goes directly to the recorded slot. The
+ * The first pass after sparse_forget records the row and the column of every addition, and sparse_end builds the
+ * compressed columns from the record. Later passes replay it: the i-th addition goes directly to the recorded slot. The
  * order of additions must not depend on values; without NDEBUG, every addition of a replay is compared with the record.
  *
- *     sparse_begin -> sparse_add, sparse_add, ... -> sparse_end -> column_start, row_index, value
- */
+ *     sparse_begin -> sparse_add, sparse_add, ... -> sparse_end -> column_start, row_index, value */
 #ifndef SPARSE_H
 #define SPARSE_H
 

@@ -1,4 +1,4 @@
-/* status.c: one message per thread, and the exit codes. */
+/* status.c: keeps one message for each thread, and translates a status into an exit code. */
 #include "base/status.h"
 
 #include <stdarg.h>

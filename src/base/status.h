@@ -1,8 +1,8 @@
-/* status.h: error codes and messages. Tested by tests/base/test_status.c.
+/* status.h: how a function tells its caller that it failed, and why. Tested by tests/base/test_status.c.
  *
- * Zero is success; positive means "retry with a smaller step"; negative is final. These are the signs that the
+ * Zero is success, a positive status asks for a smaller step, and a negative one is final. These are the signs that the
  * callbacks of SUNDIALS use, so a status passes through a callback unchanged. The function that knows the cause calls
- * status_fail with a sentence on which a user can act; callers use TRY; only main prints. */
+ * status_fail with a sentence on which a user can act; its callers use TRY; only main prints. */
 #ifndef STATUS_H
 #define STATUS_H
 

@@ -1,5 +1,5 @@
-/* table.h: growing tables of strings: a head and a unit over each column, then rows. Tested by tests/base/test_table.c.
- */
+/* table.h: tables of strings for the terminal, which grow row by row; over each column stand a head and a unit. Tested
+ * by tests/base/test_table.c. */
 #ifndef TABLE_H
 #define TABLE_H
 

@@ -1,4 +1,4 @@
-/* text.c: growing strings, and numbers without a locale. */
+/* text.c: strings that grow, and numbers that ignore the locale. */
 #include "base/text.h"
 
 #include <float.h>

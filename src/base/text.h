@@ -1,6 +1,6 @@
-/* text.h: growing strings, conversion between numbers and strings. Tested by tests/base/test_text.c.
+/* text.h: strings that grow, and conversion between numbers and strings. Tested by tests/base/test_text.c.
  *
- * Numbers are written and read with a decimal point, independent of the locale of the process. */
+ * Numbers are written and read with a decimal point, whatever the locale of the process says. */
 #ifndef TEXT_H
 #define TEXT_H
 

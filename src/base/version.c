@@ -1,4 +1,5 @@
-/* version.c: see version.h. The Makefile gives SHOAL_VERSION and SHOAL_COMMIT to this file only. */
+/* version.c: see version.h. It is the only file to which the Makefile passes SHOAL_VERSION and SHOAL_COMMIT, so that a
+ * commit recompiles nothing else. */
 #define _GNU_SOURCE  // dladdr
 #include "base/version.h"
 

@@ -1,5 +1,5 @@
-/* version.h: the versions of the program and the libraries, and the folder of the installation. Tested by
- * tests/result/test_result_file.c. */
+/* version.h: which versions of the program and of its libraries are running, on which processor, and where they are
+ * installed. Tested by tests/result/test_result_file.c. */
 #ifndef VERSION_H
 #define VERSION_H
 

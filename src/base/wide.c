@@ -1,4 +1,4 @@
-/* wide.c: a product of a full matrix and a vector. */
+/* wide.c: the product of a full matrix and a vector. */
 #include "base/wide.h"
 
 #include <string.h>

@@ -1,5 +1,5 @@
-/* wide.h: plain loops for the vectors of the processor, and the product of a full matrix and a vector. Tested by
- * tests/base/test_mathematics.c. */
+/* wide.h: compiles a plain loop for each vector width, and calls the widest that the processor has; also the product
+ * of a full matrix and a vector. Tested by tests/base/test_mathematics.c. */
 #ifndef WIDE_H
 #define WIDE_H
 

@@ -1,4 +1,4 @@
-/* bending_mode.c: power iteration on the flexibility of a body (Stodola's method). */
+/* bending_mode.c: the slowest bending mode, by power iteration on the flexibility of a body (Stodola's method). */
 #include <math.h>
 
 #include "body/rod.h"

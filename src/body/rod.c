@@ -1,4 +1,5 @@
-/* rod.c: for every joint and every edge: local geometry, then energy, force and derivative. */
+/* rod.c: goes along the body, joint by joint and edge by edge; for each the local geometry comes first, then energy,
+ * force and derivative. */
 #include "body/rod.h"
 
 #include <math.h>

@@ -1,11 +1,11 @@
-/* rod.h: the elastic body: edges, muscle (actuation), forces of bending, stretching and internal damping, derivatives
- * of the forces, energies and powers. doc/model.md, sections 2 and 3. Tested by tests/body/test_rod.c.
+/* rod.h: the elastic body. It has a muscle (the actuation) and resists bending and stretching with internal damping;
+ * this file gives the forces with their derivatives, energies and powers. doc/model.md, sections 2 and 3. Tested by
+ * tests/body/test_rod.c.
  *
  * Joint j stands at node j+1 between the edges j and j+1 and depends on the nodes j, j+1, j+2:
  *
  *     node j ---- edge j ---- node j+1 ---- edge j+1 ---- node j+2
- *                          turning angle phi
- */
+ *                          turning angle phi */
 #ifndef ROD_H
 #define ROD_H
 

@@ -1,4 +1,4 @@
-/* case.c: from a tree to plain values, row by row of the table. */
+/* case.c: turns a tree into plain values, row by row of the table of keys. */
 #include "case/case.h"
 
 #include <stdio.h>

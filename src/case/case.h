@@ -1,4 +1,4 @@
-/* case.h: reading a case. One table of keys (case_table.c) drives parsing, checking, printing and the reference
+/* case.h: reads a case. One table of keys (case_table.c) drives parsing, checking, printing and the reference
  * doc/cases.md. Tested by tests/case/test_case.c and, for bad input, tests/case/test_bad.sh.
  *
  *     text of the case ---yaml---> tree ---merge---> tree ---table---> struct case_values ---check--->

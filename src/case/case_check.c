@@ -1,4 +1,4 @@
-/* case_check.c: relations between keys, and implausible values. */
+/* case_check.c: refuses values that contradict each other, and warns of values that are hardly ever meant. */
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-/* case_keys.c: the table of keys as text and as JSON. */
+/* case_keys.c: prints the table of keys, as text and as JSON. */
 #include <string.h>
 
 #include "base/methods.h"

@@ -1,4 +1,4 @@
-/* case_merge.c: read the case file and the includes, merge the trees, apply assignments. */
+/* case_merge.c: reads the case file and its includes, merges the trees and applies assignments. */
 #include "case/case_merge.h"
 
 #include <errno.h>

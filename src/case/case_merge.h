@@ -1,9 +1,9 @@
-/* case_merge.h: one tree from a case file, the includes and the assignments of the command line. Tested by
+/* case_merge.h: makes one tree of a case file, its includes and the assignments of the command line. Tested by
  * tests/case/test_case.c.
  *
- * The tree holds the values with the highest precedence: assignments, then the case file, then the includes (the last
- * include first). defaults.fish is not merged into the fish: case_merge_value looks up keys that are missing in a fish
- * under defaults.fish. */
+ * For each key the tree holds the value with the highest precedence: assignments come first, then the case file, then
+ * the includes, the last one before the others. defaults.fish is not merged into the fish. If a key is missing in a
+ * fish, case_merge_value looks it up under defaults.fish. */
 #ifndef CASE_MERGE_H
 #define CASE_MERGE_H
 

@@ -1,4 +1,5 @@
-/* case_path.c: suggestions for an unknown word; a path word by word along the table of keys. */
+/* case_path.c: follows a path such as fish[2].body.modulus word by word along the table of keys, and suggests a key for
+ * a word that is unknown. */
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* case_show.c: the rows of the table one by one, then the sweep. */
+/* case_show.c: prints a case, row by row of the table, and then its sweep. */
 #include <math.h>
 #include <string.h>
 

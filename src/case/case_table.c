@@ -1,4 +1,5 @@
-/* case_table.c: the table of keys. The code that reads, checks, prints and documents a case loops over the table. */
+/* case_table.c: the table of keys. Whatever reads, checks, prints or documents a case loops over it, so a new key is a
+ * new row. */
 #include "case/case_table.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* case_value.c: reading and writing each type of the key table. */
+/* case_value.c: reads and writes a value of each type in the table of keys. */
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* case_values.h: a case as plain values, in the units of the case file: angles in degrees, lengths in metres or in
- * fractions of the body length, as stated in the meaning of the key. Parameters of the model are in fish/parameters.h,
- * the axes of a study in sweep.h, errors in sweep_error.h, expectations in sweep.h. */
+ * fractions of the body length, as the meaning of each key says. The parameters of the model are in fish/parameters.h,
+ * the axes and expectations of a study in sweep.h, and errors in sweep_error.h. */
 #ifndef CASE_VALUES_H
 #define CASE_VALUES_H
 

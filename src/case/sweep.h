@@ -1,4 +1,5 @@
-/* sweep.h: the axes of a study, and the members: all combinations of the values. Tested by tests/case/test_sweep.c. */
+/* sweep.h: the axes of a study and its members, which are all combinations of the values. Tested by
+ * tests/case/test_sweep.c. */
 #ifndef SWEEP_H
 #define SWEEP_H
 

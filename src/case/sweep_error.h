@@ -1,10 +1,10 @@
-/* sweep_error.h: the numerical keys, the choices of the model, and the requested error estimates of a case. Tested by
- * tests/case/test_sweep.c.
+/* sweep_error.h: what an error estimate varies: the numerical keys, the choices of the model, and what a case asks for.
+ * Tested by tests/case/test_sweep.c.
  *
  *     error: {of: [steady_speed, steady_cost_of_transport], within: 0.01, keys: default, confirm: true, models: false}
  *     error: {of: steady_cost_of_transport, against: alone.yaml}     or first, 1e5, follower=leader
  *
- * Evaluation: study/error_plan.h and doc/studies.md. */
+ * How it is evaluated: study/error_plan.h and doc/studies.md. */
 #ifndef SWEEP_ERROR_H
 #define SWEEP_ERROR_H
 

@@ -1,10 +1,9 @@
-/* sweep_expect.c: expectations, read and matched with members.
+/* sweep_expect.c: reads expectations and compares them with the members of a study.
  *
  *     - {of: speed, fish: leader, least: 0.99, most: 1.01}                 every value
  *     - {of: [nose, tail], spread: 1e-5}                                   all values together
  *     - {of: steps, where: ["solver.method=ida"], ratio: 1.5}              of some members
- *     - {fails: unstable, where: ["solver.method=euler"]}                  that are not complete, with reason
- */
+ *     - {fails: unstable, where: ["solver.method=euler"]}                  that are not complete, with reason */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* sweep_quantity.c: the table of quantities. */
+/* sweep_quantity.c: the table of quantities that a study can report. */
 #include <stdio.h>
 #include <string.h>
 

@@ -1,4 +1,4 @@
-/* yaml_tree.c: a tree from the events of libyaml; limits and refused constructs. */
+/* yaml_tree.c: builds a tree from the events of libyaml, within limits, and refuses what a case may not contain. */
 #include "case/yaml_tree.h"
 
 #include <math.h>

@@ -1,19 +1,19 @@
-/* yaml_tree.h: a subset of YAML, read into a tree of nodes with places in the source. Tested by tests/case/test_yaml.c.
+/* yaml_tree.h: reads a subset of YAML into a tree whose nodes know their places in the source. Tested by
+ * tests/case/test_yaml.c.
  *
  *     time: {end: 3}          map -- "time" -- map -- "end" -- scalar "3"
  *     fish:                    |
  *       - nodes: 7             +-- "fish" -- list -- map -- "nodes" -- scalar "7"
  *
- * Maps, lists and scalars only: anchors, aliases, tags, merge keys, duplicate keys and further documents are refused. A
- * scalar is a string, which the key interprets, never YAML. Only the events of libyaml are used: the loader of libyaml
- * takes quadratic time on hostile input.
+ * There are maps, lists and scalars only; anchors, aliases, tags, merge keys, duplicate keys and further documents are
+ * refused. A scalar is a string whose meaning the key decides, never YAML. Only the events of libyaml are used, because
+ * its loader takes quadratic time on hostile input.
  *
  * A reader continues after an error, so that the user sees all errors of a case at once, in the form of a compiler:
  *
  *     cases/x.yaml:23:5: error: fish[2].stifness: unknown key; did you mean 'modulus'?
  *         stifness: 1e6
- *         ^
- */
+ *         ^ */
 #ifndef YAML_TREE_H
 #define YAML_TREE_H
 

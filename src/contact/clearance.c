@@ -1,4 +1,5 @@
-/* clearance.c: the distance of each pair at the end of a step, and within the step if a collision is possible. */
+/* clearance.c: finds the distance of each pair at the end of a step, and within the step if they could have
+ * collided. */
 #include "contact/clearance.h"
 
 #include <math.h>

@@ -1,5 +1,6 @@
-/* clearance.h: the smallest distance of any two bodies of a school so far, at and between the steps of the integrator.
- * Bodies that touch or pass through each other are no valid solution. Tested by tests/contact/test_clearance.c. */
+/* clearance.h: remembers how close any two bodies of a school have come so far, at and between the steps of the
+ * integrator, because a run in which bodies touch or pass through each other is no valid solution. Tested by
+ * tests/contact/test_clearance.c. */
 #ifndef CLEARANCE_H
 #define CLEARANCE_H
 

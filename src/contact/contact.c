@@ -1,4 +1,5 @@
-/* contact.c: pairs in contact, and the potential between the edges of two bodies with derivatives. */
+/* contact.c: finds the pairs in contact, and gives the potential between the edges of two bodies with its
+ * derivatives. */
 #include "contact/contact.h"
 
 #include <math.h>

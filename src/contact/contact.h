@@ -1,14 +1,13 @@
-/* contact.h: repulsion between bodies, and between bodies and walls, at gaps below contact.range. doc/model.md,
+/* contact.h: pushes bodies apart, from each other and from walls, once the gap is below contact.range. doc/model.md,
  * section 16. Tested by tests/contact/test_contact.c.
  *
  * Every edge of a body is a straight strip of constant thickness (fish_distance). The potential of two edges is the
- * mean of four point-edge potentials: each end of either edge above the other edge.
+ * mean of four point-edge potentials, one for each end of either edge above the other edge.
  *
  *          edge i of fish f     a ============= b          of point p above edge j: the distance to the nearest point,
  *                                     | gap                minus half of both thicknesses
  *                                     p ============= .
- *                                       edge j of fish g
- */
+ *                                       edge j of fish g */
 #ifndef CONTACT_H
 #define CONTACT_H
 

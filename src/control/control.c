@@ -1,4 +1,4 @@
-/* control.c: heading, desired heading, and the laws for phi0. */
+/* control.c: finds where a fish heads and where it should head, and sets phi0 by one of the laws. */
 #include "control/control.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* control.h: steering by the bias phi0 of the wave of curvature. doc/model.md, section 11. Tested by
- * tests/control/test_control.c. */
+/* control.h: how a fish steers: a control law sets the bias phi0 of its wave of curvature. doc/model.md, section 11.
+ * Tested by tests/control/test_control.c. */
 #ifndef CONTROL_H
 #define CONTROL_H
 

@@ -1,4 +1,4 @@
-/* fish.c: quantities derived from the constants of a fish. */
+/* fish.c: quantities that follow from the constants of a fish. */
 #include "fish/fish.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* fish_body.c: the constants of every edge, joint and node: doc/model.md, sections 1, 3 and 9. */
+/* fish_body.c: sets the constants of every edge, joint and node. doc/model.md, sections 1, 3 and 9. */
 #include <math.h>
 #include <string.h>
 

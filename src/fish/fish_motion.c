@@ -1,4 +1,4 @@
-/* fish_motion.c: the wave, and the Fourier series of the table. */
+/* fish_motion.c: the gait as a travelling wave or as a Fourier series, prescribed motion, and the start. */
 #include "fish/fish_motion.h"
 
 #include <math.h>

@@ -1,6 +1,7 @@
-/* fish_motion.h: motion that the case gives: gait, prescribed motion, start. The gait: natural turning angles of the
- * joints of a fish: a travelling wave, or a table of curvatures over the phase. doc/model.md, section 4. Tested by
- * tests/body/test_rod.c, tests/fish/test_fish_motion.c. */
+/* fish_motion.h: all motion that the case gives. The gait says which angle each joint would like to have, by a
+ * travelling wave or by a table of curvatures over the phase. Prescribed motion says where nodes are, and the start
+ * where a fish begins. doc/model.md, sections 4 and 5. Tested by tests/body/test_rod.c,
+ * tests/fish/test_fish_motion.c. */
 #ifndef FISH_MOTION_H
 #define FISH_MOTION_H
 

@@ -1,4 +1,5 @@
-/* fish_school.c: fluid, fish, the order of the unknowns; check for overlaps at the start. */
+/* fish_school.c: sets the constants of the fluid and of all fish, gives each unknown its place, and refuses fish that
+ * overlap at the start. */
 #include "fish/fish_school.h"
 
 #include <math.h>

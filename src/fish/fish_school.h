@@ -1,4 +1,5 @@
-/* fish_school.h: from the checked parameters of a school to the constants. Tested by tests/fish/test_fish.c. */
+/* fish_school.h: computes the constants of a school (fish.h) from its checked parameters (parameters.h). Tested by
+ * tests/fish/test_fish.c. */
 #ifndef FISH_SCHOOL_H
 #define FISH_SCHOOL_H
 

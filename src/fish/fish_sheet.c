@@ -1,5 +1,5 @@
-/* fish_sheet.c: the points of the bound sheet at the cosines, on the polygon or the smooth curve, the strip of a sheet
- * of finite span, and the pressure: doc/model.md, sections 6, 15 and 18. */
+/* fish_sheet.c: sets the constants of the bound sheet: its points, at cosine spacing on the polygon or on the smooth
+ * curve, the strip of a sheet of finite span, and what the pressure needs. doc/model.md, sections 6, 15 and 18. */
 #include <math.h>
 #include <string.h>
 

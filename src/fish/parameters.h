@@ -1,6 +1,6 @@
-/* parameters.h: the parameters of a school, in the units of a case file: angles in degrees, lengths in metres or in
- * fractions of the body length, see the comments. fish_school.h converts the parameters to the constants of the
- * equations. doc/cases.md explains every value under the key of the value. */
+/* parameters.h: the parameters of a school as a case file gives them: angles in degrees, lengths in metres or in
+ * fractions of the body length, as the comments say. fish_school.h converts them to the constants of the equations.
+ * doc/cases.md explains each of them under its key. */
 #ifndef PARAMETERS_H
 #define PARAMETERS_H
 

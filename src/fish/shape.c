@@ -1,4 +1,5 @@
-/* shape.c: two nodes of a straight edge, or all nodes of the interpolant of Floater and Hormann. */
+/* shape.c: weights of the nodes at a point of the line, two on a straight edge, or all of them on the interpolant of
+ * Floater and Hormann. */
 #include "fish/shape.h"
 
 #include <assert.h>

@@ -1,8 +1,8 @@
-/* shape.h: the shape of a body: points and directions on its line, as weighted sums over the nodes, and the profiles of
- * thickness and depth. doc/model.md, section 6. Tested by tests/fish/test_shape.c.
+/* shape.h: the shape of a body. Points and directions on its line are weighted sums over the nodes, and profiles give
+ * its thickness and depth. doc/model.md, section 6. Tested by tests/fish/test_shape.c.
  *
- * u = 0 is the nose, u = k node k, u = n_nodes - 1 the tail. Two lines lead through the nodes: the polygon of straight
- * edges, and a smooth curve. */
+ * u = 0 is the nose, u = k node k, and u = n_nodes - 1 the tail. Two lines lead through the nodes: the polygon of
+ * straight edges, and a smooth curve. */
 #ifndef SHAPE_H
 #define SHAPE_H
 

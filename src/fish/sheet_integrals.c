@@ -1,4 +1,5 @@
-/* sheet_integrals.c: a cosine series through the circulations, and Gauss-Legendre quadrature in theta. */
+/* sheet_integrals.c: puts a cosine series through the circulations and integrates it by Gauss-Legendre quadrature in
+ * theta. */
 #include "fish/sheet_integrals.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
-/* sheet_integrals.h: integrals over the bound sheet that are linear in the circulations: doc/model.md, section 15.
- * Tested by tests/fish/test_sheet_integrals.c.
+/* sheet_integrals.h: integrals over the bound sheet. All of them are linear in the circulations, so they are matrices
+ * that are computed once. doc/model.md, section 15. Tested by tests/fish/test_sheet_integrals.c.
  *
- * Between nose and tail, 0 <= theta <= pi, the sheet is the cosine series through the vortices: C_j(theta) is the
- * circulation between nose and theta of the series with circulation 1 at vortex j and 0 at all other vortices. */
+ * Between nose and tail, 0 <= theta <= pi, the sheet is the cosine series through the vortices. C_j(theta) is the
+ * circulation between nose and theta of the series that has circulation 1 at vortex j and 0 at all others. */
 #ifndef SHEET_INTEGRALS_H
 #define SHEET_INTEGRALS_H
 

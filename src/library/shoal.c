@@ -1,4 +1,4 @@
-/* shoal.c: functions of include/shoal.h that open, step, read and close runs, set keys, and write result files. */
+/* shoal.c: the functions of include/shoal.h that open, step, read and close runs, set keys, and write result files. */
 #include "shoal.h"
 
 #include <limits.h>

@@ -1,4 +1,4 @@
-/* shoal_change.c: functions of include/shoal.h that change bodies and wakes at an event. */
+/* shoal_change.c: the functions of include/shoal.h that change bodies and wakes at an event. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* shoal_copy.c: functions of include/shoal.h that copy runs, in memory and as checkpoints. */
+/* shoal_copy.c: the functions of include/shoal.h that copy runs, in memory and as checkpoints. */
 #include <string.h>
 
 #include "case/case.h"

@@ -1,4 +1,5 @@
-/* checkpoint.c: first sections for data besides the state, then one section for each row of the table of the state. */
+/* checkpoint.c: a checkpoint begins with sections for what is not the state; then one section follows for each row of
+ * the table of the state. */
 #include "result/checkpoint.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* checkpoint.h: the file from which a stopped run continues: all data of a run that the result file lacks. The table of
- * the state (state/state.h) drives writing, reading and the summary. doc/reliability.md. Tested by
+/* checkpoint.h: the file from which a stopped run continues. It holds all data of a run that the result file lacks. The
+ * table of the state (state/state.h) drives writing, reading and the summary. doc/reliability.md. Tested by
  * tests/result/test_checkpoint.c. */
 #ifndef CHECKPOINT_H
 #define CHECKPOINT_H

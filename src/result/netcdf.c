@@ -1,4 +1,4 @@
-/* netcdf.c: writing and reading files, and the check of headers. */
+/* netcdf.c: writes and reads files, and checks their headers. */
 #include "result/netcdf.h"
 
 #include <errno.h>

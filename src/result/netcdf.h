@@ -1,5 +1,5 @@
-/* netcdf.h: the only caller of the NetCDF library. A file is written as a part and renamed when complete;
- * reading checks every variable, because a file can come from another program. Tested by tests/result/test_netcdf.c. */
+/* netcdf.h: the only caller of the NetCDF library. A file is written as a part, which is renamed when it is complete.
+ * Reading checks every variable, because a file may come from another program. Tested by tests/result/test_netcdf.c. */
 #ifndef NETCDF_H
 #define NETCDF_H
 

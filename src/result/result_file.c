@@ -1,4 +1,4 @@
-/* result_file.c: writing the file of a run, variable by variable of the table. */
+/* result_file.c: writes the file of a run, looping over the table of variables. */
 #include "result/result_file.h"
 
 #include <errno.h>

@@ -1,4 +1,4 @@
-/* result_file.h: writing the file of a run. doc/output.md lists the variables. Tested by
+/* result_file.h: writes the file of a run. doc/output.md lists its variables. Tested by
  * tests/result/test_result_file.c. */
 #ifndef RESULT_FILE_H
 #define RESULT_FILE_H

@@ -1,5 +1,5 @@
-/* result_info.h: the summary of a result file, as text and as JSON. Tested by tests/result/test_result_info.c and
- * tests/app/test_steady_command.sh. */
+/* result_info.h: summarises a result file, as text and as JSON, for `shoal info`. Tested by
+ * tests/result/test_result_info.c and tests/app/test_steady_command.sh. */
 #ifndef RESULT_INFO_H
 #define RESULT_INFO_H
 

@@ -1,4 +1,4 @@
-/* result_kind.c: common summary of all files of shoal. */
+/* result_kind.c: the part of the summary that all files of shoal share. */
 #include "result/result_kind.h"
 
 #include <string.h>

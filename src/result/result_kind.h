@@ -1,5 +1,5 @@
-/* result_kind.h: the kinds of files of shoal, with the common parts: the summary of `shoal info`, and the list of
- * variables of `shoal keys --output`. The table of kinds is in app/main_case.c. Tested by
+/* result_kind.h: the kinds of files that shoal writes, and what they have in common: the summary of `shoal info` and
+ * the list of variables of `shoal keys --output`. The table of kinds is in app/main_case.c. Tested by
  * tests/result/test_result_info.c. */
 #ifndef RESULT_KIND_H
 #define RESULT_KIND_H

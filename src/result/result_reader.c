@@ -1,4 +1,4 @@
-/* result_reader.c: read the file of a run by the table of variables. */
+/* result_reader.c: reads the file of a run, looping over the table of variables. */
 #include "result/result_reader.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* result_reader.h: the file of a run, read row by row with every variable checked against the table. Tested by
+/* result_reader.h: reads the file of a run row by row, and checks every variable against the table. Tested by
  * tests/view/test_page.c. */
 #ifndef RESULT_READER_H
 #define RESULT_READER_H

@@ -1,4 +1,4 @@
-/* result_row.c: values that have to be put together. */
+/* result_row.c: variables whose values have to be put together. */
 #include "result/result_row.h"
 
 #include <math.h>

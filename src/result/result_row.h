@@ -1,4 +1,4 @@
-/* result_row.h: the input of a row of a result file, and variables that are computed from several fields. Tested by
+/* result_row.h: what a row of a result file is made from, and the variables that combine several fields. Tested by
  * tests/result/test_result_file.c. */
 #ifndef RESULT_ROW_H
 #define RESULT_ROW_H

@@ -1,4 +1,4 @@
-/* result_table.c: the table of variables. */
+/* result_table.c: the table of variables; a new variable is a new row. */
 #include "result/result_table.h"
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
-/* result_table.h: the variables of a result file and the source of each value. One table drives definition,
- * writing, reading and doc/output.md: a new variable is a new row. Tested by tests/result/test_result_file.c. */
+/* result_table.h: the variables of a result file, and where the value of each comes from. One table drives definition,
+ * writing, reading and doc/output.md. Tested by tests/result/test_result_file.c. */
 #ifndef RESULT_TABLE_H
 #define RESULT_TABLE_H
 

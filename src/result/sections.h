@@ -1,10 +1,10 @@
-/* sections.h: bytes in named sections, each with a checksum, the format of checkpoints. Tested by
+/* sections.h: the format of checkpoints: bytes in named sections, each with a checksum. Tested by
  * tests/result/test_checkpoint.c.
  *
  *     "SHOAL\r\n\x1a"  format  0x01020304  size of all  checksum of these 24 bytes
  *     section = name (24 bytes, filled up with zeros)  n  n bytes  checksum of name, n and bytes
  *
- * Numbers have the byte order of the machine, shown by the second number: format, order and checksums have 4 bytes,
+ * Numbers have the byte order of the machine, which the second number shows. Format, order and checksums have 4 bytes,
  * sizes 8. A checksum is the CRC-32 of zlib. The line break in the first word reveals a copy in text mode. */
 #ifndef SECTIONS_H
 #define SECTIONS_H

@@ -1,4 +1,4 @@
-/* target.c: marks of the files of shoal, and checks before replacing a file. */
+/* target.c: recognises the files of shoal, and checks a path before a file there is replaced. */
 #define _GNU_SOURCE  // memmem
 #include "result/target.h"
 

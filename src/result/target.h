@@ -1,7 +1,7 @@
-/* target.h: checks of the path of an output file. Tested by tests/result/test_target.c.
+/* target.h: checks whether shoal may write to a path. Tested by tests/result/test_target.c.
  *
- * Every file of shoal is recognised by the first bytes. A file without these bytes was written by another program or by
- * hand, and no option lets shoal replace such a file. */
+ * Every file of shoal can be recognised by its first bytes. A file without them was written by another program or by
+ * hand, and no option lets shoal replace it. */
 #ifndef TARGET_H
 #define TARGET_H
 

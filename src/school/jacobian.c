@@ -1,4 +1,4 @@
-/* jacobian.c: allocation of blocks, and products with couplings. */
+/* jacobian.c: the blocks of the Jacobian, and products with them. */
 #include "school/jacobian.h"
 
 #include <string.h>
@@ -26,7 +26,6 @@ void jacobian_couple(struct jacobian *jacobian, const unsigned char *coupled, un
     for (int i = 0; i < n_fish * n_fish; i++) n += coupled[i] && i / n_fish != i % n_fish;
     GROW(jacobian->arena, jacobian->coupling, n + 1);
 
-    // list the couplings, fish by fish
     size_t n_values = 1;
     for (int f = 0, next = 0; f < n_fish; f++) {
         for (int g = 0; g < n_fish; g++) {
@@ -38,7 +37,6 @@ void jacobian_couple(struct jacobian *jacobian, const unsigned char *coupled, un
         jacobian->first[f + 1] = next;
     }
 
-    // place the blocks in one array
     GROW(jacobian->arena, jacobian->values, n_values);
     double *value = jacobian->values;
     for (int i = 0; i < n; i++) {
@@ -58,7 +56,7 @@ void jacobian_multiply_couplings(const struct jacobian *jacobian, int f, const d
         const struct fish *other = &school->fish[jacobian->coupling[i].other];
         const struct coupling_block *rows = &jacobian->coupling[i].rows;
 
-        // columns of x and y, then of gamma and circulation: each group is contiguous in the unknowns
+        // the columns of x and y, then those of gamma and circulation, because each group is contiguous in the unknowns
         const int n_places = 2 * other->n_nodes;
         wide_multiply(rows->n_rows, n_places, rows->value, unknowns + other->at.x, product);
         wide_multiply(rows->n_rows, rows->n_columns - n_places, rows->value + (long)n_places * rows->n_rows,
@@ -79,7 +77,6 @@ void jacobian_add(const struct jacobian *jacobian, double factor, int n, const i
                   const int *column_number, double *matrix) {
     const struct school *const school = jacobian->school;
     for (int f = 0; f < school->n_fish; f++) {
-        // the diagonal block
         const struct sparse *const own = jacobian->own[f];
         for (int c = 0; c < own->n; c++) {
             const int column = column_number[own->first + c];
@@ -89,7 +86,6 @@ void jacobian_add(const struct jacobian *jacobian, double factor, int n, const i
             }
         }
 
-        // the couplings
         for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
             const struct coupling_block *const rows = &jacobian->coupling[i].rows;
             const struct fish *const other = &school->fish[jacobian->coupling[i].other];

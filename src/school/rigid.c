@@ -1,4 +1,4 @@
-/* rigid.c: rigid-body quantities of a fish, and changes at constant shape. */
+/* rigid.c: reads and changes the rigid-body quantities of a fish. */
 #include "school/rigid.h"
 
 #include <math.h>
@@ -32,7 +32,6 @@ void rigid_relative_place(const struct rigid *seen_from, const struct rigid *oth
     place[1] = c * way[1] - s * way[0];
 }
 
-// rotate (*x, *y) about a centre
 static void rotate(const double centre[2], double angle, double *x, double *y) {
     const double c = cos(angle), s = sin(angle), dx = *x - centre[0], dy = *y - centre[1];
     *x = centre[0] + c * dx - s * dy;
@@ -41,8 +40,8 @@ static void rotate(const double centre[2], double angle, double *x, double *y) {
 
 static const double origin[2] = {0, 0};
 
-// displace the wake to the wake of a fish with constant new velocity and turn, then turn and displace it with the fish;
-// tail: position of the last node
+// Make the wake the one of a fish that has always had the new velocity and turn, then rotate and move it with the fish;
+// tail: where the last node was.
 static void change_wake(struct wake *wake, double t, const double centre[2], const double tail[2],
                         const double velocity[2], double turn, double angle, const double way[2]) {
     const double of_tail[2] = {velocity[0] - turn * (tail[1] - centre[1]), velocity[1] + turn * (tail[0] - centre[0])};
@@ -59,7 +58,7 @@ static void change_wake(struct wake *wake, double t, const double centre[2], con
         wake->y[i] += way[1];
     }
 
-    // slip: velocity of the flow minus velocity of the tail
+    // the slip is the velocity of the flow minus that of the tail
     for (int i = 0; i < 2; i++) {
         wake->tail_velocity[i] += of_tail[i];
         wake->slip[i] -= of_tail[i];
@@ -82,7 +81,7 @@ void rigid_change(const struct school *school, struct state *state, int f, const
     double *const x = state->y + fish->at.x, *const y = state->y + fish->at.y;
     double *const vx = state->y + fish->at.vx, *const vy = state->y + fish->at.vy;
 
-    // change the velocity, then turn about the centre of mass and displace
+    // change the velocity, then rotate about the centre of mass and move
     for (int k = 0; k < fish->n_nodes; k++) {
         vx[k] += velocity[0] - change->turn * (y[k] - before.place[1]);
         vy[k] += velocity[1] + change->turn * (x[k] - before.place[0]);
@@ -93,7 +92,7 @@ void rigid_change(const struct school *school, struct state *state, int f, const
     }
     change_wake(&state->wake[f], state->t, before.place, tail, velocity, change->turn, change->heading, change->place);
 
-    // rotate every vector of the samples of the last period with the fish: means over the period do not jump
+    // rotate every vector in the samples of the last period with the fish, so that means over the period do not jump
     struct history *const history = &state->history[f];
     for (int i = 0; i < history->n_slots; i++) {
         struct sample *const sample = &history->sample[i];
@@ -112,7 +111,7 @@ void rigid_change(const struct school *school, struct state *state, int f, const
     }
     if (history->n == 0) return;
 
-    // the stream of the newest sample at the new position: the next event integrates drifted from this value
+    // give the newest sample the stream at its new position, from which the next event integrates drifted
     struct sample *const newest = &history->sample[history->last];
     flow_external(school, state->t, newest->com[0], newest->com[1], &newest->stream[0], &newest->stream[1]);
 }

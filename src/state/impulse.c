@@ -1,4 +1,4 @@
-/* impulse.c: moments of vortices, and lost moments. */
+/* impulse.c: the impulse of vortices, and the impulse that is lost when they decay or are removed. */
 #include <math.h>
 
 #include "state/state.h"

@@ -1,4 +1,4 @@
-/* state.c: the state before the start, histories of samples, the table of fields and loops over the table. */
+/* state.c: the state at the start, the histories of samples, and the table of fields with the loops over it. */
 #include "state/state.h"
 
 #include <math.h>

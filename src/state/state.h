@@ -1,5 +1,5 @@
-/* state.h: the state of a run: every value that changes and that a resumed run needs. Tested by
- * tests/state/test_state.c. */
+/* state.h: the state of a run, that is every value that changes and that a resumed run needs; whatever is not here can
+ * be computed again. Tested by tests/state/test_state.c. */
 #ifndef STATE_H
 #define STATE_H
 

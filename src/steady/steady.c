@@ -1,4 +1,4 @@
-/* steady.c: search, correction by the multipliers, last beats and result of a steady state. */
+/* steady.c: finds a steady state, corrects it by the multipliers, swims the last beats and writes the result. */
 #include "steady/steady.h"
 
 #include <math.h>

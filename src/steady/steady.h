@@ -1,6 +1,6 @@
-/* steady.h: computation of the steady state of a case and of the result file: search, multipliers, last beats. A case
- * without a beat gives an equilibrium. doc/steady.md. Tested by tests/steady/test_steady.c and
- * tests/app/test_steady_command.sh. */
+/* steady.h: computes the steady state of a case and writes its result, for `shoal steady`: the search, the multipliers,
+ * and the last beats. For a case without a beat this is an equilibrium. doc/steady.md. Tested by
+ * tests/steady/test_steady.c and tests/app/test_steady_command.sh. */
 #ifndef STEADY_H
 #define STEADY_H
 

@@ -1,4 +1,4 @@
-/* steady_map.c: the beat, and the slow quantities. */
+/* steady_map.c: swims a beat, and reads and changes the slow quantities. */
 #include "steady/steady_map.h"
 
 #include <math.h>

@@ -1,5 +1,6 @@
-/* steady_map.h: a simulation as a map from one beat to the next. The slow quantities of the fish can be read and
- * changed at the end of a beat; the fast quantities follow. doc/steady.md. Tested by tests/steady/test_steady.c. */
+/* steady_map.h: a simulation seen as a map from one beat to the next. At the end of a beat the slow quantities of the
+ * fish can be read and changed; the fast ones follow by themselves. doc/steady.md. Tested by
+ * tests/steady/test_steady.c. */
 #ifndef STEADY_MAP_H
 #define STEADY_MAP_H
 

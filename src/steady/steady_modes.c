@@ -1,4 +1,4 @@
-/* steady_modes.c: modes of an equilibrium and multipliers of a beat. */
+/* steady_modes.c: how stable the state is: the modes of an equilibrium, and the multipliers of a beat. */
 #include <math.h>
 #include <string.h>
 

@@ -1,4 +1,4 @@
-/* steady_problem.c: unknowns and beats of the search, and the reason of a search without a result. */
+/* steady_problem.c: chooses the unknowns of the search, counts its beats, and says why a search has no result. */
 #include "steady/steady_problem.h"
 
 #include <math.h>

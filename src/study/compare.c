@@ -1,4 +1,4 @@
-/* compare.c: the sweep of a comparison, errors against the reference, the table, and the cost at equal error. */
+/* compare.c: the sweep of a comparison, the errors against its reference, the table, and the cost at equal error. */
 #include "study/compare.h"
 
 #include <math.h>

@@ -1,11 +1,11 @@
-/* compare.h: comparison of integration methods and tolerances or steps: error, wall time and counts. Tested by
+/* compare.h: compares integration methods, with several tolerances or steps, by error, wall time and counts. Tested by
  * tests/study/test_compare.c and test_compare_command.sh.
  *
- * The comparison is a study with a reference in a temporary folder. The members run one at a time, and each round of
- * repeats runs all settings, so that the noise of the machine affects all settings alike.
+ * A comparison is a study with a reference in a temporary folder. Its members run one at a time, and each round of
+ * repeats runs all settings, so that the noise of the machine affects them alike.
  *
- * The single axis sets solver.method, solver.order, solver.rtol and solver.step, in this order. Member 0 is the
- * reference; member 1 gives the error of the reference; further members with equal values are repeats. */
+ * The only axis sets solver.method, solver.order, solver.rtol and solver.step, in this order. Member 0 is the
+ * reference, member 1 tells the error of the reference, and further members with equal values are repeats. */
 #ifndef COMPARE_H
 #define COMPARE_H
 

@@ -1,4 +1,4 @@
-/* error_plan.c: keys, levels and members of an error study. */
+/* error_plan.c: chooses keys, levels and members of an error study, and combines what the levels say. */
 #include "study/error_plan.h"
 
 #include <math.h>

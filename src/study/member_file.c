@@ -1,4 +1,4 @@
-/* member_file.c: reading status and final values of a member of a study. */
+/* member_file.c: reads the status and the final values of a member of a study. */
 #include "study/member_file.h"
 
 #include <math.h>

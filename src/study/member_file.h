@@ -1,5 +1,4 @@
-/* member_file.h: final values of a member, read from the result file of the member. Tested by
- * tests/study/test_member_file.c.
+/* member_file.h: final values of a member, read from its result file. Tested by tests/study/test_member_file.c.
  *
  * A quantity is the last row of a variable of a result, a number computed from the last rows, or a value of a steady
  * state. */

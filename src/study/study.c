@@ -1,4 +1,4 @@
-/* study.c: run the members of a study in parallel processes. */
+/* study.c: runs the members of a study in parallel processes. */
 #define _DEFAULT_SOURCE  // MAP_ANONYMOUS
 #include "study/study.h"
 

@@ -1,8 +1,8 @@
-/* study.h: runs the members of a study, one process per member. Tested by tests/study/test_study.sh and
+/* study.h: runs the members of a study, each in a process of its own. Tested by tests/study/test_study.sh and
  * tests/slurm/test_slurm.sh.
  *
  * A second call on the same folder continues the study: finished members are skipped, members with a checkpoint are
- * resumed, all other members run again. */
+ * resumed, and all others run again. */
 #ifndef STUDY_H
 #define STUDY_H
 

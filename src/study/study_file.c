@@ -1,4 +1,4 @@
-/* study_file.c: writing and reading study.nc, and reports. */
+/* study_file.c: writes and reads study.nc, and reports. */
 #define _DEFAULT_SOURCE  // mkdtemp
 #include "study/study_file.h"
 

@@ -1,5 +1,5 @@
-/* study_file.h: the file study.nc, which is gathered from the member files of a study, and the reports of studies.
- * Tested by tests/study/test_study_file.c, test_study.sh, test_error.sh and test_compare_command.sh. */
+/* study_file.h: the file study.nc, which is gathered from the files of the members of a study, and the reports of
+ * studies. Tested by tests/study/test_study_file.c, test_study.sh, test_error.sh and test_compare_command.sh. */
 #ifndef STUDY_FILE_H
 #define STUDY_FILE_H
 

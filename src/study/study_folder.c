@@ -1,4 +1,4 @@
-/* study_folder.c: names, reasons and final values of member files. */
+/* study_folder.c: names the files of members, and reads why they failed and what they found. */
 #include "study/study_folder.h"
 
 #include <dirent.h>

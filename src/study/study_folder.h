@@ -1,4 +1,4 @@
-/* study_folder.h: the folder and the files of a study; the members that have to run. Tested by
+/* study_folder.h: the folder of a study with its files, from which follows which members still have to run. Tested by
  * tests/study/test_study.sh and test_study_folder.c.
  *
  *     FOLDER/member-0000.nc       result of a member, with the study and the number of the member

@@ -1,4 +1,4 @@
-/* study_print.h: everything printed about a study: members, warnings, expectations, orders, and errors. Tested by
+/* study_print.h: prints everything about a study: members, warnings, expectations, orders, and errors. Tested by
  * tests/study/test_study.sh, test_error.sh, test_study_file.c, test_study_print.c and test_error_plan.c. */
 #ifndef STUDY_PRINT_H
 #define STUDY_PRINT_H

@@ -1,4 +1,4 @@
-/* study_slurm.c: a study as an array job of Slurm. */
+/* study_slurm.c: runs a study as an array job of Slurm. */
 #include <errno.h>
 #include <limits.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
-/* export.h: a run for other programs. page.c: a run as one page of HTML: page.html with the data. Tested by
- * tests/view/test_page.c and, in a browser, tests/extra/test_view.sh.
+/* export.h: writes a run for other programs. page.c makes one page of HTML from it (page.html with the data), vtk.c
+ * files for ParaView. Tested by tests/view/test_page.c and, in a browser, tests/extra/test_view.sh.
  *
- * The page stays below 8 MB: for a long run the page has every n-th row, and for long wakes every m-th vortex, with a
- * note. */
+ * The page stays below 8 MB. Of a long run it therefore holds only every n-th row, and of long wakes every m-th vortex,
+ * with a note that says so. */
 #ifndef EXPORT_H
 #define EXPORT_H
 

@@ -1,4 +1,4 @@
-/* field_file.c: a field is summed in memory and written at once. */
+/* field_file.c: sums a field in memory and writes it at once. */
 #include "view/field_file.h"
 
 #include <limits.h>

@@ -1,5 +1,5 @@
-/* field_file.h: the file of a field: velocity and vorticity of the fluid on a grid, at the time of one row of a result
- * file. Tested by tests/view/test_field_file.c. */
+/* field_file.h: the velocity and the vorticity of the fluid on a grid, at the time of one row of a result file, and the
+ * file that holds them. Tested by tests/view/test_field_file.c. */
 #ifndef FIELD_FILE_H
 #define FIELD_FILE_H
 

@@ -1,4 +1,4 @@
-/* field_row.c: from the variables of a result file back to a state. */
+/* field_row.c: makes a state again from the variables of a result file. */
 #include <limits.h>
 #include <math.h>
 #include <stdbool.h>

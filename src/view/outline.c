@@ -1,4 +1,4 @@
-/* outline.c: weights of the nodes at each point, and the thickness between the edges. */
+/* outline.c: the weights of the nodes at each point of the outline, and the thickness between the edges. */
 #include "view/outline.h"
 
 #include <math.h>

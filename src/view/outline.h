@@ -1,11 +1,10 @@
-/* outline.h: the outline of a body as a polygon: the smooth curve through the nodes, which carries the bound sheet
- * (doc/model.md, section 6), as thick as the edges are. Tested by tests/view/test_outline.c.
+/* outline.h: the outline of a body as a polygon around the smooth curve through the nodes, which carries the bound
+ * sheet (doc/model.md, section 6). It is as thick as the edges are. Tested by tests/view/test_outline.c.
  *
  *            left side, from nose to tail
  *      .--------------------------.
  *     <  . . . points of the curve . >        the polygon goes along the left side and back along the right one
- *      '--------------------------'
- */
+ *      '--------------------------' */
 #ifndef OUTLINE_H
 #define OUTLINE_H
 

@@ -1,6 +1,6 @@
-/* page.c: the data of a run between the two halves of page.html, as JSON with numbers in base 64.
+/* page.c: puts the data of a run between the two halves of page.html, as JSON with numbers in base 64.
  *
- * Positions are 16-bit integers within a box per row: {left, bottom, size / 65535}. */
+ * Positions are 16-bit integers within a box for each row: {left, bottom, size / 65535}. */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* vtk.c: VTK's XML files of lines, polygons and points, numbers in base 64. */
+/* vtk.c: writes VTK's XML files of lines, polygons and points, with numbers in base 64. */
 #include <errno.h>
 #include <math.h>
 #include <stdint.h>

@@ -1,4 +1,5 @@
-/* sheet.c: points of stretches, and markers, with the legs; smoothing near the tail; the end of the nascent stretch. */
+/* sheet.c: turns the queue of a wake into sources: points of stretches, or markers, with their legs. It also finds how
+ * the smoothing tapers near the tail, and where the nascent stretch ends. */
 #include "wake/sheet.h"
 
 #include <math.h>

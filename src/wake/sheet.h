@@ -1,21 +1,20 @@
-/* sheet.h: the wake of a fish as sources: a free sheet between markers (shedding: sheet), or a queue of point vortices.
- * doc/model.md, sections 7, 8 and 18. Tested by tests/wake/test_sheet.c.
+/* sheet.h: the wake of a fish as sources of the flow. With shedding: sheet it is a free sheet between markers,
+ * otherwise a queue of point vortices. doc/model.md, sections 7, 8 and 18. Tested by tests/wake/test_sheet.c.
  *
- * The queue of a free sheet holds markers: points of the sheet, each with the label Gamma_i, the circulation shed by
- * the fish until the birth of the marker at the tail. Stretch i lies between the markers i and i + 1 and has the
- * circulation Gamma_i+1 - Gamma_i of the decayed labels; the nascent stretch lies between the newest marker n and the
- * tail, with Gamma(t) - Gamma_n.
+ * The queue of a free sheet holds markers, which are points of the sheet. Each has a label Gamma_i, the circulation
+ * that the fish had shed when the marker was born at the tail. Stretch i lies between the markers i and i + 1 and has
+ * the circulation Gamma_i+1 - Gamma_i of the decayed labels. The nascent stretch lies between the newest marker n and
+ * the tail and has Gamma(t) - Gamma_n.
  *
  *     marker 0 ---- 1 ---- ... ---- n-1 ---- n - - - - tail )=== body
  *      oldest                          stretch 1  nascent
  *
- * Old stretches (stretch.h) act from the markers around them in all views. Of young stretches the sheet has three
- * views:
+ * Old stretches (stretch.h) act from the markers around them, whoever looks. Young stretches are seen in three ways:
  *
- *   graded     for control points of the same fish: points of the newest stretches, graded towards the tail, and the
- *              middles of older ones, with a smoothing that tapers to 0 at the tail
- *   middles    for all other points of bodies: the middle of every stretch; or the queue and the nascent vortex
- *   markers    for markers: the markers, each with half of both adjacent stretches */
+ *     graded     by control points of the same fish: points of the newest stretches, graded towards the tail, and the
+ *                middles of older ones, with a smoothing that tapers to 0 at the tail
+ *     middles    by all other points of bodies: the middle of every stretch; or the queue and the nascent vortex
+ *     markers    by markers: the markers, each with half of both adjacent stretches */
 #ifndef SHEET_H
 #define SHEET_H
 

@@ -1,4 +1,4 @@
-/* sources.c: growing arrays. */
+/* sources.c: arrays of sources that grow. */
 #include "wake/sources.h"
 
 #include <string.h>

@@ -1,7 +1,7 @@
 /* sources.h: a list of sources of the flow. doc/model.md, section 18. Tested by tests/wake/test_sheet.c.
  *
- * A source has a spanwise vortex of circulation q, and a leg d = C dx along the sheet; flow/kernel.h states the
- * velocity. Without legs a source is a point vortex. */
+ * A source consists of a spanwise vortex of circulation q and of a leg d = C dx along the sheet; flow/kernel.h says
+ * which velocity they cause. Without a leg a source is a point vortex. */
 #ifndef SOURCES_H
 #define SOURCES_H
 

@@ -1,4 +1,4 @@
-/* stretch.c: linear and cubic forms of stretches; one pass of dropping. */
+/* stretch.c: the linear and the cubic form of a stretch, and one pass that drops markers. */
 #include "wake/stretch.h"
 
 #include <math.h>

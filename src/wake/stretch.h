@@ -1,12 +1,12 @@
-/* stretch.h: what a stretch of a free sheet gives to the markers around it, and which markers of the old part of a
- * sheet are dropped. doc/model.md, section 7; doc/numerics.md, section 13. Tested by tests/wake/test_stretch.c.
+/* stretch.h: what a stretch of a free sheet contributes to the markers around it, and which markers of the old part of
+ * a sheet can be dropped. doc/model.md, section 7; doc/numerics.md, section 13. Tested by tests/wake/test_stretch.c.
  *
- * Stretch j lies between the markers j and j + 1. A young stretch acts at its ends; an old one at four markers:
+ * Stretch j lies between the markers j and j + 1. A young stretch acts at its two ends, an old one at four markers:
  *
  *     marker    j-1 ------- j ======= j+1 ------- j+2        the parts B_ab of labels b at markers a
  *     a, b       0          1          2           3
  *
- * The oldest stretch has the markers 0 to 3. */
+ * For the oldest stretch these are the markers 0 to 3. */
 #ifndef STRETCH_H
 #define STRETCH_H
 

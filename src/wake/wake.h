@@ -1,5 +1,5 @@
-/* wake.h: the free sheet of a fish: a queue of point vortices, oldest first, and the nascent vortex at its tail.
- * doc/model.md, sections 7 and 8. Tested by tests/wake/test_wake.c.
+/* wake.h: the wake of a fish as it is stored: a queue of vortices (or of markers of a free sheet), oldest first, and
+ * the nascent vortex at the tail. doc/model.md, sections 7 and 8. Tested by tests/wake/test_wake.c.
  *
  * One interval between two events t_n and t_n+1 = t_n + Dt:
  *
@@ -7,8 +7,7 @@
  *      |  a released vortex moves on a known path:             |
  *      |  x + tau W + tau^2/(2 Dt) (W - W_before)              |
  *      |  the nascent vortex grows as shed - shed_before       |   then: move, release, remove, new W and slip
- *      |  at x_tail(t) + tau slip/2                            |
- */
+ *      |  at x_tail(t) + tau slip/2                            | */
 #ifndef WAKE_H
 #define WAKE_H
 
