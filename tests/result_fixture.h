@@ -32,7 +32,7 @@ struct fixture {
     struct state *state;
     struct residual residual;
     struct range joints[N_FISH];
-    struct pressure *pressure[N_FISH]; /* none */
+    struct fluid_force force[N_FISH]; /* without pressure */
     double natural_curvature[8];
     struct diagnostics diagnostics;
     struct diagnostics_fish of_fish[N_FISH];
@@ -60,7 +60,7 @@ static inline int set_up(void **state) {
     number_consecutively(f->natural_curvature, 8, 1);
     f->residual = (struct residual){.school = f->school,
                                     .state = f->state,
-                                    .pressure = f->pressure,
+                                    .force = f->force,
                                     .joints = f->joints,
                                     .muscle = {.curvature = f->natural_curvature}};
     f->diagnostics =

@@ -30,9 +30,18 @@
 
 /* First index of each slice in the vector of all unknowns, and one past the last. The equations have the same layout:
  * rows x, y: dx/dt - v; vx, vy: dv/dt - a; ax, ay: law of motion; sheet: M - 1 times impermeability, then Kelvin;
- * shed: Kutta; phi0: control law. With force: pressure vx, vy: velocity by momentum; px, py: dp/dt - a. */
+ * shed: Kutta; phi0: control law. With force: pressure vx, vy: velocity by momentum; px, py: dp/dt - a.
+ *
+ * Three more places, which depend on the force too:
+ *
+ *     second     px, or vx without momenta: the pairs whose rate is the acceleration a
+ *     full       ax where the sheet loads the body, else gamma: the first row that depends on the whole sheet and,
+ *                through it, on all positions; the rows before are sparse
+ *     rated      circulation where the sheet loads the body, else gamma: one past the last bound strength whose rate
+ *                acts */
 struct layout {
     int x, y, vx, vy, px, py, ax, ay, gamma, circulation, phi0, end;
+    int second, full, rated;
 };
 
 /* A straight rigid motion given in time: doc/model.md, section 5. Angles in rad. */
@@ -251,11 +260,6 @@ struct direction fish_direction_of(const double vector[2]);
 
 /* The vector along the body at the node positions in y. */
 struct direction fish_direction(const struct fish *fish, const struct tangent *tangent, const double *y);
-
-/* Whether the fish has the slices px, py: force: pressure. */
-static inline bool fish_has_momentum(const struct fish *fish) {
-    return fish->at.px < fish->at.ax;
-}
 
 /* Whether the velocity of its own wake acts at the edge midpoints of the fish: not with force: reactive. doc/model.md,
  * section 9. */

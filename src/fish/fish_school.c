@@ -291,7 +291,8 @@ enum status fish_school_create(struct arena *parent, struct school **school,
     // the slices of the unknowns, fish after fish
     for (int f = 0; f < created->n_fish; f++) {
         const struct fish *const fish = &created->fish[f];
-        const int n = fish->n_nodes, n_momenta = fish->force == FORCE_PRESSURE ? n : 0;
+        const bool is_loaded = fish->force == FORCE_PRESSURE;  // by the sheet
+        const int n = fish->n_nodes, n_momenta = is_loaded ? n : 0;
         struct layout *const at = &created->fish[f].at;
         at->x = created->n_unknowns;
         at->y = at->x + n;
@@ -305,6 +306,9 @@ enum status fish_school_create(struct arena *parent, struct school **school,
         at->circulation = at->gamma + fish->n_sheet;
         at->phi0 = at->circulation + 1;
         at->end = created->n_unknowns = at->phi0 + 1;
+        at->second = is_loaded ? at->px : at->vx;
+        at->full = is_loaded ? at->ax : at->gamma;
+        at->rated = is_loaded ? at->circulation : at->gamma;
     }
 
     struct arena *const scratch = arena_create(arena, "the start of a school");

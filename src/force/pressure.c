@@ -7,18 +7,22 @@
 #include "base/wide.h"
 #include "body/rod.h"
 #include "fish/fish_motion.h"
+#include "force/edge_force.h"
+#include "force/force_model.h"
 
 /* Values at the control points by full matrices: X' in x and y, velocity in x and y, circulation of the interval, and
  * circulation between nose and point. */
 enum { LINE, VELOCITY = 2, AROUND = 4, BEFORE, N_AT_POINTS };
 
-struct pressure *pressure_create(struct arena *arena, const struct fish *fish) {
+static void pressure_create(struct arena *arena, struct fluid_force *force) {
+    const struct fish *const fish = force->fish;
     const int n = fish->n_nodes, n_control = fish->n_control;
     struct pressure *created;
     NEW(arena, created, 1);
     created->arena = arena;
     created->fish = fish;
-    NEW(arena, created->momentum, 2 * n);
+    force->pressure = created;
+    created->momentum = force->momentum;
     NEW(arena, created->momentum_rate, 2 * n);
     NEW(arena, created->force, 2 * n);
     struct pressure_matrix *const matrices[] = {&created->matrix, &created->rate};
@@ -37,7 +41,6 @@ struct pressure *pressure_create(struct arena *arena, const struct fish *fish) {
     for (int c = 0; c < n_control; c++) {
         for (int k = 0; k < n; k++) created->share[c * n + k] = fish->control_point[c].weight[k] / fish->mass[k];
     }
-    return created;
 }
 
 // R = sum over j: P_j times the circulation of vortex j; strength: the unknowns or the rates of the unknowns. R of the
@@ -168,30 +171,40 @@ double pressure_momentum_ratio(const struct fish *fish, int k) {
     return 1 + per_area * fish->length * fish->edge_length / fish->mass[k];
 }
 
-int pressure_momentum_row(const struct fish *fish, int at_start, int i, int k) {
+int pressure_momentum_row(const struct fish *fish, bool at_start, int i, int k) {
     const bool is_given = at_start || fish_is_prescribed(fish, k, i);
     return (is_given ? fish->at.px : fish->at.vx) + i * fish->n_nodes + k;
 }
 
-void pressure_momentum_residual(const struct pressure *p, int at_start, const double *y, double *residual) {
-    const struct fish *fish = p->fish;
+// the relation of p, v and I in one of the two rows; in the other one dp/dt = a, or nothing where v is given
+static void pressure_motion_residual(const struct fluid_force *force, bool at_start, const double *y, const double *yp,
+                                     double *residual) {
+    const struct fish *const fish = force->fish;
+    const struct layout *const at = &fish->at;
     for (int i = 0; i < 2; i++) {
         for (int k = 0; k < fish->n_nodes; k++) {
-            const int node = i * fish->n_nodes + k;
-            residual[pressure_momentum_row(fish, at_start, i, k)] =
-                y[fish->at.px + node] - y[fish->at.vx + node] - p->momentum[node] / fish->mass[k];
+            const int node = i * fish->n_nodes + k, row = pressure_momentum_row(fish, at_start, i, k);
+            residual[row] = y[at->px + node] - y[at->vx + node] - force->momentum[node] / fish->mass[k];
+            if (row < at->px) {
+                residual[at->px + node] = yp[at->px + node] - y[at->ax + node];
+            } else if (!fish_is_prescribed(fish, k, i)) {
+                residual[at->vx + node] = 0;
+            }
         }
     }
 }
 
-void pressure_residual(const struct pressure *p, double *residual) {
-    const struct fish *fish = p->fish;
+static void pressure_residual(const struct fluid_force *force, const struct flow_at_body *flow, const double *y,
+                              double *residual) {
+    const struct pressure *const p = force->pressure;
+    const struct fish *const fish = force->fish;
+    edge_force_residual(force, flow, y, residual);
     for (int i = 0; i < 2 * fish->n_nodes; i++) residual[fish->at.ax + i] -= p->force[i];
     residual[fish->at.ax] -= p->suction[0];
     residual[fish->at.ay] -= p->suction[1];
 }
 
-void pressure_momentum_by_strength(const struct fish *fish, int j, const double *x, double *momentum) {
+static void pressure_momentum_by_strength(const struct fish *fish, int j, const double *x, double *momentum) {
     const int n = fish->n_nodes;
     sheet_integrals_product(fish->integrals, j, x, x + n, momentum + n, momentum);
     for (int k = 0; k < n; k++) {
@@ -200,8 +213,10 @@ void pressure_momentum_by_strength(const struct fish *fish, int j, const double 
     }
 }
 
-void pressure_momentum_jacobian(struct pressure *p, int at_start, const double *y, struct sparse *jacobian) {
-    const struct fish *fish = p->fish;
+static void pressure_motion_jacobian(const struct fluid_force *force, bool at_start, double cj, const double *y,
+                                     struct sparse *jacobian) {
+    struct pressure *const p = force->pressure;
+    const struct fish *const fish = force->fish;
     const int n = fish->n_nodes;
     for (int k = 0; k < n; k++) {
         for (int i = 0; i < 2; i++) {
@@ -214,6 +229,11 @@ void pressure_momentum_jacobian(struct pressure *p, int at_start, const double *
             for (int m = 0; m < n; m++) {
                 sparse_add(jacobian, row, fish->at.x + other + m, sign * p->matrix.value[m * n + k]);
             }
+
+            // dp/dt = a
+            if (row >= fish->at.px) continue;
+            sparse_add(jacobian, fish->at.px + node, fish->at.px + node, cj);
+            sparse_add(jacobian, fish->at.px + node, fish->at.ax + node, -1);
         }
     }
 
@@ -229,8 +249,11 @@ void pressure_momentum_jacobian(struct pressure *p, int at_start, const double *
     }
 }
 
-void pressure_jacobian(const struct pressure *p, struct sparse *jacobian) {
-    const struct fish *fish = p->fish;
+static void pressure_jacobian(const struct fluid_force *force, const struct flow_at_body *flow, const double *y,
+                              struct sparse *jacobian) {
+    const struct pressure *const p = force->pressure;
+    const struct fish *const fish = force->fish;
+    edge_force_jacobian(force, flow, y, jacobian);
     const struct direction *const first = &p->point[0].body;
     const int n = fish->n_nodes, n_control = fish->n_control;
     double *const column = p->parts;
@@ -257,10 +280,11 @@ void pressure_jacobian(const struct pressure *p, struct sparse *jacobian) {
     }
 }
 
-void pressure_own_jacobian(struct pressure *p, const double *y, struct coupling_block *rows) {
-    const struct fish *fish = p->fish;
+static void pressure_own_jacobian(const struct fluid_force *force, const double *y, struct coupling_block *rows) {
+    const struct pressure *const p = force->pressure;
+    const struct fish *const fish = force->fish;
     const int n = fish->n_nodes, n_control = fish->n_control;
-    double *const force[2] = {p->spread, p->spread + n_control};
+    double *const at_point[2] = {p->spread, p->spread + n_control};
 
     // by the positions. Convection: the tangent turns with X', dt = n (n.dX')/|X'|, dn = -t (n.dX')/|X'|; spanwise
     // flow: E3 dx_c is linear in the positions
@@ -272,12 +296,12 @@ void pressure_own_jacobian(struct pressure *p, const double *y, struct coupling_
             const struct direction *const body = &point->body;
             const double across = edge_dot(point->slip, body->n), tau = slip_along(point);
             const double turn = point->strength / body->length * body->n[i] * slope[c];
-            force[0][c] = turn * (across * body->n[0] - tau * body->t[0]);
-            force[1][c] = turn * (across * body->n[1] - tau * body->t[1]);
+            at_point[0][c] = turn * (across * body->n[0] - tau * body->t[0]);
+            at_point[1][c] = turn * (across * body->n[1] - tau * body->t[1]);
             if (!(fish->strip_depth > 0)) continue;
             const double span = point->before * point->divergence * fish->control_interval[c] * slope[c];
-            force[0][c] -= i == 1 ? span : 0;
-            force[1][c] += i == 0 ? span : 0;
+            at_point[0][c] -= i == 1 ? span : 0;
+            at_point[1][c] += i == 0 ? span : 0;
         }
         spread_forces(p, rows->value + (long)m * rows->n_rows);
     }
@@ -303,14 +327,14 @@ void pressure_own_jacobian(struct pressure *p, const double *y, struct coupling_
             const struct pressure_point *const point = &p->point[c];
             const double size = fish->control_density[c] * fish->integrals->strength[(long)j * n_control + c] *
                                 fish->sheet_weight[j] * slip_along(point);
-            force[0][c] = size * point->body.n[0];
-            force[1][c] = size * point->body.n[1];
+            at_point[0][c] = size * point->body.n[0];
+            at_point[1][c] = size * point->body.n[1];
             if (!(fish->strip_depth > 0)) continue;
             const double before = fish->control_density[c] * fish->sheet_weight[j] *
                                   fish->integrals->circulation[(long)j * n_control + c];
             const double across = before * point->divergence * point->body.length * fish->control_interval[c];
-            force[0][c] += across * point->body.n[0] - before * point->edge[0];
-            force[1][c] += across * point->body.n[1] - before * point->edge[1];
+            at_point[0][c] += across * point->body.n[0] - before * point->edge[0];
+            at_point[1][c] += across * point->body.n[1] - before * point->edge[1];
         }
         spread_forces(p, column);
 
@@ -319,9 +343,11 @@ void pressure_own_jacobian(struct pressure *p, const double *y, struct coupling_
     }
 }
 
-void pressure_flow_jacobian(const struct pressure *p, const struct influence_block *block,
-                            struct coupling_block *rows) {
-    const struct fish *fish = p->fish;
+static void pressure_flow_jacobian(const struct fluid_force *force, const struct flow_at_body *flow,
+                                   const struct influence_block *block, const double *y, struct coupling_block *rows) {
+    const struct pressure *const p = force->pressure;
+    const struct fish *const fish = force->fish;
+    edge_force_flow_jacobian(force, flow, block, y, rows);
     const struct direction *const first = &p->point[0].body;
     for (long m = 0; m < block->n_columns; m++) {
         const double *const u = block->u + m * block->n_points, *const v = block->v + m * block->n_points;
@@ -338,13 +364,13 @@ void pressure_flow_jacobian(const struct pressure *p, const struct influence_blo
         for (int c = 0; div && c < fish->n_control; c++) {
             const struct pressure_point *const point = &p->point[c];
             const double across = point->before * div[c] * point->body.length * fish->control_interval[c];
-            double *const x = p->spread + c, *const y = x + fish->n_control;
-            *x += across * point->body.n[0];
-            *y += across * point->body.n[1];
+            double *const along_x = p->spread + c, *const along_y = along_x + fish->n_control;
+            *along_x += across * point->body.n[0];
+            *along_y += across * point->body.n[1];
             if (!edge) continue;
             const double widening = point->before * fish->control_widening[c] * fish->control_interval[c];
-            *x -= widening * edge[c];
-            *y -= widening * edge[(long)block->n_columns * block->n_points + c];
+            *along_x -= widening * edge[c];
+            *along_y -= widening * edge[(long)block->n_columns * block->n_points + c];
         }
         spread_forces(p, rows->value + m * rows->n_rows);
 
@@ -451,3 +477,78 @@ struct pressure_forces pressure_sum(const struct pressure *p, const double about
 
     return sum;
 }
+
+// ---- the force model
+
+static void pressure_update_all(const struct fluid_force *force, const struct flow_at_body *flow, const double *y,
+                                const double *yp) {
+    pressure_update(force->pressure, flow, y);
+    if (yp) pressure_update_rate(force->pressure, y, yp);
+}
+
+static void pressure_add_momentum_rate(const struct fluid_force *force, const double *y, const double *yp,
+                                       double *residual) {
+    const struct fish *const fish = force->fish;
+    pressure_update_rate(force->pressure, y, yp);
+    for (int i = 0; i < 2 * fish->n_nodes; i++) residual[fish->at.ax + i] += force->pressure->momentum_rate[i];
+}
+
+static struct fluid_forces pressure_fluid_forces(const struct fluid_force *force, const struct flow_at_body *flow,
+                                                 const double about[2], const double *y) {
+    struct fluid_forces forces = edge_force_sum(force, flow, about, y);
+    forces.pressure = pressure_sum(force->pressure, about, y);
+    return forces;
+}
+
+static struct fluid_power pressure_fluid_power(const struct fluid_force *force, const struct flow_at_body *flow,
+                                               const double *y) {
+    struct fluid_power power = edge_force_power(force, flow, y);
+    const struct pressure_forces of_sheet = pressure_sum(force->pressure, (const double[2]){0, 0}, y);
+    power.pressure = of_sheet.pressure_power;
+    power.suction = of_sheet.suction_power;
+    return power;
+}
+
+// the momentum of the fluid, and the bound circulation at the tail: together they equal the sum over the control points
+static void pressure_add_impulse(const struct fluid_force *force, const struct sources *bound, double factor,
+                                 const double *y, double impulse[3]) {
+    const struct fish *const fish = force->fish;
+    for (int k = 0; k < fish->n_nodes; k++) {
+        const double place[2] = {y[fish->at.x + k], y[fish->at.y + k]};
+        const double momentum[2] = {force->momentum[k], force->momentum[fish->n_nodes + k]};
+        impulse[0] += momentum[0];
+        impulse[1] += momentum[1];
+        impulse[2] += edge_cross(place, momentum);
+    }
+
+    double total = 0, tail[2], of_sheet[3];
+    for (int j = 0; j < fish->n_sheet; j++) total += bound->q[j];
+    struct impulse_moments at_tail = {0};
+    fish_tail(fish, y, tail);
+    impulse_add(&at_tail, total, tail[0], tail[1]);
+    impulse_of(&at_tail, factor, of_sheet);
+    for (int i = 0; i < 3; i++) impulse[i] += of_sheet[i];
+}
+
+static void pressure_add_moments(const struct fluid_force *force, const double *x, const double *y,
+                                 struct impulse_moments *sum) {
+    for (int c = 0; c < force->fish->n_control; c++)
+        impulse_add(sum, force->pressure->point[c].circulation, x[c], y[c]);
+}
+
+const struct force_model pressure_model = {.has_balance = true,
+                                           .create = pressure_create,
+                                           .update = pressure_update_all,
+                                           .motion_residual = pressure_motion_residual,
+                                           .motion_jacobian = pressure_motion_jacobian,
+                                           .residual = pressure_residual,
+                                           .jacobian = pressure_jacobian,
+                                           .own_jacobian = pressure_own_jacobian,
+                                           .flow_jacobian = pressure_flow_jacobian,
+                                           .add_momentum_rate = pressure_add_momentum_rate,
+                                           .momentum_by_strength = pressure_momentum_by_strength,
+                                           .forces = pressure_fluid_forces,
+                                           .power = pressure_fluid_power,
+                                           .energy = edge_force_energy,
+                                           .add_impulse = pressure_add_impulse,
+                                           .add_moments = pressure_add_moments};

@@ -6,15 +6,15 @@
  *
  *     rows v (p if v is given)      p - v - I/m = 0       I: added momentum, linear in positions and strengths
  *     rows p                        dp/dt - a = 0
- *     rows a                        (m a - F)/m = 0       F: includes rotation, convection and suction of this file */
+ *     rows a                        (m a - F)/m = 0       F: includes rotation, convection and suction of this file
+ *
+ * The force model pressure_model (force_model.h) is defined here; the functions below are for results and tests. */
 #ifndef PRESSURE_H
 #define PRESSURE_H
 
 #include "base/arena.h"
-#include "base/sparse.h"
 #include "fish/fish.h"
 #include "flow/flow_at_bodies.h"
-#include "flow/flow_derivative.h"
 #include "state/state.h"
 
 /* A control point. circulation: of the interval around the point, m2 s-1; strength: circulation times density and
@@ -63,37 +63,16 @@ struct suction_law {
 };
 struct suction_law pressure_suction_law(double full, double bound);
 
-/* Create the pressure of a fish with force: pressure. */
-struct pressure *pressure_create(struct arena *arena, const struct fish *fish);
-
 /* Update matrix, momentum, force, suction and points from the unknowns y and the velocity of the fluid. All functions
  * below require this update with the same y. */
 void pressure_update(struct pressure *pressure, const struct flow_at_body *flow, const double *y);
 
-/* Derivative of the added momentum, kg m s-1, by the unknown of vortex j; x and momentum: x of all nodes, then y. */
-void pressure_momentum_by_strength(const struct fish *fish, int j, const double *x, double *momentum);
-
 /* Estimated ratio of p to v of node k: 1 plus the ratio of the added mass of a plate to the mass of the node. */
 double pressure_momentum_ratio(const struct fish *fish, int k);
 
-/* The row of the relation of p, v and I for component i of node k: the row of v, or the row of p if v is given (at the
- * start: all nodes). */
-int pressure_momentum_row(const struct fish *fish, int at_start, int i, int k);
-
-/* Set the rows of the relation of p, v and I, m s-1; subtract the forces from the rows ax, ay, N. */
-void pressure_momentum_residual(const struct pressure *pressure, int at_start, const double *y, double *residual);
-void pressure_residual(const struct pressure *pressure, double *residual);
-
-/* Add the derivatives of the rows of the momentum; add the derivatives of the rows ax, ay, divided by the mass of the
- * node, by the velocities of the nodes. */
-void pressure_momentum_jacobian(struct pressure *pressure, int at_start, const double *y, struct sparse *jacobian);
-void pressure_jacobian(const struct pressure *pressure, struct sparse *jacobian);
-
-/* Add the derivatives of the rows ax, ay, divided by the mass of the node: by the positions and strengths of the fish
- * with the velocity of the fluid held constant, and through the velocity of the fluid. */
-void pressure_own_jacobian(struct pressure *pressure, const double *y, struct coupling_block *rows);
-void pressure_flow_jacobian(const struct pressure *pressure, const struct influence_block *block,
-                            struct coupling_block *rows);
+/* The row of the relation of p, v and I for component i of node k: the row of v, or the row of p if v is given, by
+ * prescribed motion or at the start of all nodes. */
+int pressure_momentum_row(const struct fish *fish, bool at_start, int i, int k);
 
 /* Update momentum_rate from the rates yp of positions and strengths. */
 void pressure_update_rate(struct pressure *pressure, const double *y, const double *yp);

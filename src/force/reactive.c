@@ -1,8 +1,7 @@
-/* reactive.c: the published added mass; Lagrange's equations of mu w_n^2/2. */
+/* reactive.c: the flux at the tail; Lagrange's equations of mu w_n^2/2; the published added mass. */
 #include "force/reactive.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "body/rod.h"
 
@@ -120,6 +119,8 @@ void tail_flux_flow_jacobian(const struct fish *fish, const struct flow_at_body 
     }
 }
 
+// ---- Lagrange's equations of mu w_n^2/2
+
 // components of w and of the relative acceleration a - b in the frame of the edge, and the coefficients of the force
 struct frame {
     double wt, wn, at, an;
@@ -142,15 +143,9 @@ static struct frame reactive_frame(const struct fish *fish, int k, const struct 
     return frame;
 }
 
-void reactive_force(const struct fish *fish, int k, const struct edge *edge, const double w[2], const double b[2],
-                    double force[2][2]) {
+static void lagrange_force(const struct fish *fish, int k, const struct edge *edge, const double w[2],
+                           const double b[2], double force[2][2]) {
     const double half_mass = fish->added_mass[k] / 2;
-    if (fish->force == FORCE_PUBLISHED) {
-        const double inertia = half_mass * edge_dot(edge->acceleration, edge->n);
-        for (int i = 0; i < 2; i++) force[0][i] = force[1][i] = -inertia * edge->n[i];
-        return;
-    }
-
     const struct frame f = reactive_frame(fish, k, edge, w, b);
     for (int i = 0; i < 2; i++) {
         const double both = -half_mass * (f.push * edge->n[i] - f.wn * f.turn_rate * edge->t[i]);
@@ -160,21 +155,12 @@ void reactive_force(const struct fish *fish, int k, const struct edge *edge, con
     }
 }
 
-void reactive_slope(const struct fish *fish, int k, const struct edge *edge, const double w[2], const double b[2],
-                    struct reactive_slope *slope) {
+static void lagrange_slope(const struct fish *fish, int k, const struct edge *edge, const double w[2],
+                           const double b[2], struct reaction_slope *slope) {
     const double *const t = edge->t, *const n = edge->n, l = edge->length;
     const double half_mass = fish->added_mass[k] / 2;
-    memset(slope, 0, sizeof *slope);
     for (int i = 0; i < 2; i++) {
         for (int j = 0; j < 2; j++) slope->by_acceleration[i][j] = -half_mass * n[i] * n[j];
-    }
-
-    if (fish->force == FORCE_PUBLISHED) {
-        const double an = edge_dot(edge->acceleration, n), at = edge_dot(edge->acceleration, t);
-        for (int i = 0; i < 2; i++) {
-            slope->by_turn[0][i] = slope->by_turn[1][i] = half_mass * (at * n[i] + an * t[i]);
-        }
-        return;
     }
 
     // by a rotation: dw_n = -w_t, dw_t = w_n, d(a.n) = -a.t
@@ -199,3 +185,44 @@ void reactive_slope(const struct fish *fish, int k, const struct edge *edge, con
         }
     }
 }
+
+static double lagrange_power(const struct fish *fish, int k, const struct edge *edge, const double w[2],
+                             const double b[2]) {
+    double force[2][2], power = 0;
+    lagrange_force(fish, k, edge, w, b, force);
+    for (int i = 0; i < 2; i++) {
+        power += (force[0][i] + force[1][i]) * edge->velocity[i] + (force[1][i] - force[0][i]) * edge->rate[i] / 2;
+    }
+    return power;
+}
+
+const struct edge_reaction reactive_of_lagrange = {lagrange_force, lagrange_slope, lagrange_power};
+
+// ---- the article's force: -mu (a.n) n, half on each node
+
+static void published_force(const struct fish *fish, int k, const struct edge *edge, const double w[2],
+                            const double b[2], double force[2][2]) {
+    (void)w, (void)b;
+    const double inertia = fish->added_mass[k] / 2 * edge_dot(edge->acceleration, edge->n);
+    for (int i = 0; i < 2; i++) force[0][i] = force[1][i] = -inertia * edge->n[i];
+}
+
+static void published_slope(const struct fish *fish, int k, const struct edge *edge, const double w[2],
+                            const double b[2], struct reaction_slope *slope) {
+    (void)w, (void)b;
+    const double *const t = edge->t, *const n = edge->n, half_mass = fish->added_mass[k] / 2;
+    const double an = edge_dot(edge->acceleration, n), at = edge_dot(edge->acceleration, t);
+    for (int i = 0; i < 2; i++) {
+        for (int j = 0; j < 2; j++) slope->by_acceleration[i][j] = -half_mass * n[i] * n[j];
+        slope->by_turn[0][i] = slope->by_turn[1][i] = half_mass * (at * n[i] + an * t[i]);
+    }
+}
+
+static double published_power(const struct fish *fish, int k, const struct edge *edge, const double w[2],
+                              const double b[2]) {
+    (void)w, (void)b;
+    const double inertia = fish->added_mass[k] * edge_dot(edge->acceleration, edge->n);
+    return -(inertia * edge_dot(edge->velocity, edge->n));
+}
+
+const struct edge_reaction reactive_published = {published_force, published_slope, published_power};

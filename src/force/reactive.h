@@ -1,18 +1,9 @@
 /* reactive.h: reactive force on the edges of a body (added mass), and momentum flux at the tail.
- * doc/model.md, section 9. Tested by tests/force/test_reactive.c.
- *
- * fish->force selects Lagrange's equations of the kinetic energy of the fluid (reactive) or the article's force, which
- * is only the added mass across the edge, without flux at the tail (published).
- *
- * w: velocity of the midpoint of the edge relative to the fluid; b: acceleration of the external flow. */
+ * doc/model.md, section 9. Tested by tests/force/test_reactive.c. */
 #ifndef REACTIVE_H
 #define REACTIVE_H
 
-#include "base/sparse.h"
-#include "body/rod.h"
-#include "fish/fish.h"
-#include "flow/flow_at_bodies.h"
-#include "flow/flow_derivative.h"
+#include "force/force_model.h"
 
 /* Momentum flux into the wake at the tail (Lighthill), as a force on the tail node. doc/model.md, section 9.
  *
@@ -30,21 +21,8 @@ void tail_flux_jacobian(const struct fish *fish, const struct flow_at_body *flow
 void tail_flux_flow_jacobian(const struct fish *fish, const struct flow_at_body *flow,
                              const struct influence_block *block, const double *y, struct coupling_block *rows);
 
-/* Derivatives of the forces on the two nodes of an edge: first index node, second index component. */
-struct reactive_slope {
-    double by_velocity[2][2][2];  /* by w, with edge.rate constant */
-    double by_rate[2][2][2];      /* by edge.rate, with w constant */
-    double by_turn[2][2];         /* by a rotation of the edge (dt = n, dn = -t) */
-    double by_length[2][2];       /* by the length of the edge */
-    double by_acceleration[2][2]; /* of the force on each node, by the acceleration of the midpoint */
-};
-
-/* Reactive force of edge k on its two nodes, N. */
-void reactive_force(const struct fish *fish, int k, const struct edge *edge, const double w[2], const double b[2],
-                    double force[2][2]);
-
-/* Derivatives of reactive_force. */
-void reactive_slope(const struct fish *fish, int k, const struct edge *edge, const double w[2], const double b[2],
-                    struct reactive_slope *slope);
+/* Lagrange's equations of the kinetic energy of the fluid; and the article's force, which is only the added mass across
+ * the edge, without flux at the tail. */
+extern const struct edge_reaction reactive_of_lagrange, reactive_published;
 
 #endif

@@ -7,7 +7,7 @@
 #include "body/rod.h"
 #include "flow/flow_at_bodies.h"
 #include "force/bound_sheet.h"
-#include "force/fluid_force.h"
+#include "force/edge_force.h"
 #include "force/thwaites.h"
 
 static void interleave(int n, const double *x, const double *y, double *slots) {
@@ -35,7 +35,8 @@ void result_row_body(const struct result_row *row, int f, enum result_part part,
         case PART_VELOCITY: interleave(n, y + fish->at.vx, y + fish->at.vy, slots); break;
         case PART_ACCELERATION: {
             // with momenta as unknowns, the unknowns a are the rates of the momenta
-            const double *const a = fish_has_momentum(fish) ? row->state->yp + fish->at.vx : y + fish->at.ax;
+            const bool has_momenta = fish->at.second > fish->at.vx;
+            const double *const a = has_momenta ? row->state->yp + fish->at.vx : y + fish->at.ax;
             interleave(n, a, a + n, slots);
             break;
         }
@@ -63,7 +64,7 @@ void result_row_sheet(const struct result_row *row, int f, enum result_part part
     }
 
     // control points, and sensors
-    struct pressure *const pressure = row->residual ? row->residual->pressure[f] : NULL;
+    struct pressure *const pressure = row->residual ? row->residual->force[f].pressure : NULL;
     for (int c = 0; c < fish->n_control; c++) {
         if (part == PART_CONTROL_ARC) slots[c] = fish_mean(&fish->control_point[c], fish->arc);
         if (part == PART_PRESSURE && pressure) slots[c] = pressure_jump(pressure, c, y, row->state->yp);
@@ -82,9 +83,9 @@ void result_row_wake(const struct result_row *row, int f, enum result_part part,
 
 void result_row_sides(const struct result_row *row, int f, enum result_part part, double *slots) {
     const struct fish *const fish = &row->school->fish[f];
-    struct pressure *const pressure = row->residual->pressure[f];
-    if (!pressure) return;
-    const struct thwaites_friction sides = thwaites_friction(pressure, row->state->y, row->state->yp);
+    const struct fluid_force *const force = &row->residual->force[f];
+    if (!force->pressure) return;
+    const struct thwaites_friction sides = thwaites_friction(force->pressure, row->state->y, row->state->yp);
 
     switch (part) {
         case PART_LEFT_FRICTION: copy_values(2, sides.force[0], slots); break;
@@ -98,7 +99,7 @@ void result_row_sides(const struct result_row *row, int f, enum result_part part
             double law = 0;
             for (int k = 0; k < fish->n_edges; k++) {
                 const struct edge edge = edge_at(fish, k, row->state->y);
-                law += edge_dot(fluid_force_of_edge(fish, &flow, k, about, row->state->y).friction, edge.t);
+                law += edge_dot(edge_force_of_edge(force, &flow, k, about, row->state->y).friction, edge.t);
             }
             slots[0] = fabs(law) > 0 ? sides.along / law : NAN;
         }
@@ -107,16 +108,16 @@ void result_row_sides(const struct result_row *row, int f, enum result_part part
 
 void result_row_edges(const struct result_row *row, int f, enum result_part part, double *slots) {
     const struct fish *const fish = &row->school->fish[f];
-    const struct pressure *const pressure = row->residual->pressure[f];
+    const struct fluid_force *const force = &row->residual->force[f];
     const struct flow_at_body flow = flow_at_body(row->residual->flow, f);
     const double *const about = row->diagnostics->fish[f].com;
 
     for (int k = 0; k < fish->n_edges; k++) {
         if (part == PART_EDGE_PRESSURE_FORCE) {
             slots[2 * k] = slots[2 * k + 1] = 0;
-            if (pressure) pressure_of_edge(pressure, k, row->state->y, row->state->yp, slots + 2 * k);
+            if (force->pressure) pressure_of_edge(force->pressure, k, row->state->y, row->state->yp, slots + 2 * k);
         } else {
-            const struct fluid_forces forces = fluid_force_of_edge(fish, &flow, k, about, row->state->y);
+            const struct fluid_forces forces = edge_force_of_edge(force, &flow, k, about, row->state->y);
             copy_values(2, part == PART_EDGE_RESISTIVE_FORCE ? forces.resistive : forces.reactive, slots + 2 * k);
         }
     }

@@ -14,8 +14,7 @@
 #include "flow/flow_at_bodies.h"
 #include "force/bound_sheet.h"
 #include "force/drag.h"
-#include "force/fluid_force.h"
-#include "force/pressure.h"
+#include "force/force_model.h"
 #include "school/diagnostics_energy.h"
 #include "school/diagnostics_momentum.h"
 
@@ -47,12 +46,10 @@ void diagnostics_remember(struct residual *residual, struct state *state) {
         flow_external(residual->school, state->t, sample.com[0], sample.com[1], &sample.stream[0], &sample.stream[1]);
 
         // forces
-        const struct flow_at_body flow = flow_at_body(residual->flow, f);
-        const struct fluid_forces forces = fluid_force_sum(fish, &flow, sample.com, y);
-        const struct pressure_forces pressure = diagnostics_pressure(residual, f, sample.com, y);
+        const struct fluid_forces forces = diagnostics_fluid(residual, f, sample.com, y);
         memcpy(sample.friction, forces.friction, sizeof sample.friction);
-        diagnostics_fluid_force(forces.resistive, forces.reactive, &pressure, sample.force);
-        sample.leading_edge = pressure.leading_edge_a0;
+        diagnostics_fluid_force(forces.resistive, forces.reactive, &forces.pressure, sample.force);
+        sample.leading_edge = forces.pressure.leading_edge_a0;
         sample.bias = y[fish->at.phi0];
         memcpy(sample.work, state->balance[f].work, sizeof sample.work);
 
@@ -256,6 +253,7 @@ static void diagnostics_fill_fish(struct residual *residual, const struct state 
                                   struct diagnostics *diagnostics) {
     struct diagnostics_fish *const to = &diagnostics->fish[f];
     const struct fish *fish = &residual->school->fish[f];
+    const struct fluid_force *const force = &residual->force[f];
     const struct history *history = &state->history[f];
     const double *const y = state->y;
 
@@ -271,7 +269,7 @@ static void diagnostics_fill_fish(struct residual *residual, const struct state 
 
     diagnostics_period(fish, history, residual->school->interval, to);
     diagnostics_forces(residual, f, state->t, y, to);
-    if (residual->pressure[f]) sensor_pressure_update(residual->flow, state, f, residual->pressure[f]);
+    if (force->pressure) sensor_pressure_update(residual->flow, state, f, force->pressure);
     to->swept_vortices = swept_vortices(residual->school, state, diagnostics, f);
 
     to->phi0 = y[fish->at.phi0];
@@ -289,7 +287,7 @@ static void diagnostics_fill_fish(struct residual *residual, const struct state 
     to->stretching_energy = energies.stretching;
     to->contact_energy = energies.contact;
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
-    to->added_mass_energy = fluid_force_added_mass_energy(fish, &flow, y);
+    to->added_mass_energy = force->model->energy(force, &flow, y);
 
     const struct diagnostics_power power = diagnostics_power(residual, f, state->t, y);
     to->actuation_power = power.actuation;

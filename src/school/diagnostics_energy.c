@@ -11,7 +11,7 @@
 #include "fish/fish_motion.h"
 #include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
-#include "force/fluid_force.h"
+#include "force/force_model.h"
 #include "school/diagnostics_momentum.h"
 
 // strains, strain rates for the damping, and stresses for the actuation of fish f: from the positions of the nodes, or,
@@ -33,8 +33,9 @@ static struct rod_strains find_strains(struct residual *residual, int f, const s
 struct diagnostics_power diagnostics_power(struct residual *residual, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
-    const struct fluid_power fluid = fluid_force_power(fish, &flow, y);
-    const struct pressure_forces pressure = diagnostics_pressure(residual, f, (const double[2]){0, 0}, y);
+    const struct fluid_force *const force = &residual->force[f];
+    if (force->model->update) force->model->update(force, &flow, y, residual->state->yp);
+    const struct fluid_power fluid = force->model->power(force, &flow, y);
     residual_actuate(residual, f, t, y);
     const struct actuation muscle = residual_muscle(residual, f);
     const struct rod_strains strains = find_strains(residual, f, &muscle, y);
@@ -66,21 +67,21 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
                                       .friction = fluid.friction,
                                       .added_mass = fluid.added_mass,
                                       .wake = fluid.wake,
-                                      .pressure = pressure.pressure_power,
-                                      .suction = pressure.suction_power,
+                                      .pressure = fluid.pressure,
+                                      .suction = fluid.suction,
                                       .contact = contact_terms(residual->contact, f, y).power,
                                       .driving = driving};
 
     // the powers in the frame of the external flow at the centre of mass; without external flow both frames agree
     const double com[2] = {fish_mass_mean(fish, y + fish->at.x), fish_mass_mean(fish, y + fish->at.y)};
-    double stream[2], force[2];
+    double stream[2], of_fluid[2];
     power.on_water = power.drag + power.added_mass + power.wake + power.pressure + power.suction;
     power.driving_on_water = power.driving;
     flow_external(residual->school, t, com[0], com[1], &stream[0], &stream[1]);
     if (!(fabs(stream[0]) + fabs(stream[1]) > 0)) return power;
-    const struct fluid_forces forces = fluid_force_sum(fish, &flow, com, y);
-    diagnostics_fluid_force(forces.resistive, forces.reactive, &pressure, force);
-    for (int i = 0; i < 2; i++) power.on_water -= force[i] * stream[i];
+    const struct fluid_forces forces = force->model->forces(force, &flow, com, y);
+    diagnostics_fluid_force(forces.resistive, forces.reactive, &forces.pressure, of_fluid);
+    for (int i = 0; i < 2; i++) power.on_water -= of_fluid[i] * stream[i];
     for (int i = 0; i < 2; i++) power.driving_on_water -= driving_force[i] * stream[i];
     return power;
 }

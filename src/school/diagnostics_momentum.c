@@ -10,19 +10,16 @@
 #include "fish/fish_motion.h"
 #include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
-#include "force/fluid_force.h"
+#include "force/force_model.h"
 #include "state/state.h"
 
 // ---- forces of the fluid, of contacts, of constraints
 
-struct pressure_forces diagnostics_pressure(struct residual *residual, int f, const double about[2], const double *y) {
-    struct pressure *const pressure = residual->pressure[f];
-    if (!pressure) return (struct pressure_forces){.leading_edge_a0 = NAN};
-
+struct fluid_forces diagnostics_fluid(struct residual *residual, int f, const double about[2], const double *y) {
+    const struct fluid_force *const force = &residual->force[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
-    pressure_update(pressure, &flow, y);
-    pressure_update_rate(pressure, y, residual->state->yp);
-    return pressure_sum(pressure, about, y);
+    if (force->model->update) force->model->update(force, &flow, y, residual->state->yp);
+    return force->model->forces(force, &flow, about, y);
 }
 
 void diagnostics_fluid_force(const double resistive[2], const double reactive[2],
@@ -33,10 +30,9 @@ void diagnostics_fluid_force(const double resistive[2], const double reactive[2]
 void diagnostics_forces(struct residual *residual, int f, double t, const double *y, struct diagnostics_fish *to) {
     const struct school *const school = residual->school;
     const struct fish *fish = &school->fish[f];
-    const struct flow_at_body flow = flow_at_body(residual->flow, f);
     const bool is_prescribed = fish->motion.prescribed != PRESCRIBED_NONE;
 
-    const struct fluid_forces forces = fluid_force_sum(fish, &flow, to->com, y);
+    const struct fluid_forces forces = diagnostics_fluid(residual, f, to->com, y);
     memcpy(to->resistive_force, forces.resistive, sizeof forces.resistive);
     memcpy(to->friction_force, forces.friction, sizeof forces.friction);
     memcpy(to->reactive_force, forces.reactive, sizeof forces.reactive);
@@ -44,7 +40,7 @@ void diagnostics_forces(struct residual *residual, int f, double t, const double
     to->resistive_moment = forces.resistive_moment;
     to->friction_moment = forces.friction_moment;
     to->reactive_moment = forces.reactive_moment;
-    to->pressure = diagnostics_pressure(residual, f, to->com, y);
+    to->pressure = forces.pressure;
 
     // The direction of the thrust: heading of a free fish; of prescribed motion the direction of travel, of a held body
     // through the water without the gust. doc/model.md, section 13.
@@ -76,10 +72,10 @@ void diagnostics_forces(struct residual *residual, int f, double t, const double
     }
 }
 
-/* Whether the momentum of a fish and of the fluid can balance: with force: pressure and constant depth along the body,
- * or without fluid. */
-static int diagnostics_has_reaction(const struct school *school, const struct fish *fish) {
-    return !(school->density > 0) || (fish_has_momentum(fish) && impulse_depth(fish) > 0);
+/* Whether the momentum of a fish and of the fluid can balance: the body takes the momentum of its vortices, and the
+ * depth is constant along the body; or there is no fluid. */
+static bool diagnostics_has_reaction(const struct school *school, const struct fish *fish) {
+    return !(school->density > 0) || (force_model_of(fish)->has_balance && impulse_depth(fish) > 0);
 }
 
 // ---- momentum of a body, impulse of its vortices
@@ -93,8 +89,7 @@ static void add_with_moment(double sum[3], double x, double y, double along_x, d
 
 // the added momentum of component i of node k
 static double added_momentum(const struct residual *residual, int f, int i, int k) {
-    const struct pressure *const pressure = residual->pressure[f];
-    return pressure ? pressure->momentum[i * residual->school->fish[f].n_nodes + k] : 0;
+    return residual->force[f].momentum[i * residual->school->fish[f].n_nodes + k];
 }
 
 // add the nascent vortex, or stretch, of a fish
@@ -119,39 +114,23 @@ struct momenta {
 
 static struct momenta momenta_of(struct residual *residual, const struct state *state, int f) {
     const struct fish *const fish = &residual->school->fish[f];
-    const struct sources *const bound = &residual->flow->fish[f].own;
+    const struct fluid_force *const force = &residual->force[f];
+    const struct flow_at_body flow = flow_at_body(residual->flow, f);
     const double *const y = state->y, factor = residual->school->density * impulse_depth(fish);
     struct momenta of = {.body = {0}};
-    diagnostics_pressure(residual, f, (const double[2]){0, 0}, y);
+    if (force->model->update) force->model->update(force, &flow, y, residual->state->yp);
     for (int k = 0; k < fish->n_nodes; k++) {
         add_with_moment(of.body, y[fish->at.x + k], y[fish->at.y + k], fish->mass[k] * y[fish->at.vx + k],
                         fish->mass[k] * y[fish->at.vy + k]);
     }
 
-    // the wake
-    struct impulse_moments wake = impulse_of_wake(&state->wake[f], residual->school, state->t, 0), sheet = {0};
-    double tail[2], of_sheet[3], total = 0;
+    // the wake, and the bound sheet
+    struct impulse_moments wake = impulse_of_wake(&state->wake[f], residual->school, state->t, 0);
+    double tail[2];
     fish_tail(fish, y, tail);
     add_nascent(&wake, residual->flow, state, f, 0, tail);
     impulse_of(&wake, factor, of.fluid);
-
-    // the bound sheet
-    for (int j = 0; j < fish->n_sheet; j++) {
-        impulse_add(&sheet, bound->q[j], bound->x[j], bound->y[j]);
-        total += bound->q[j];
-    }
-
-    // with momenta: added momentum plus bound circulation at the tail, which equals the sum over the control points
-    if (residual->pressure[f]) {
-        for (int k = 0; k < fish->n_nodes; k++) {
-            add_with_moment(of.fluid, y[fish->at.x + k], y[fish->at.y + k], added_momentum(residual, f, 0, k),
-                            added_momentum(residual, f, 1, k));
-        }
-        sheet = (struct impulse_moments){0};
-        impulse_add(&sheet, total, tail[0], tail[1]);
-    }
-    impulse_of(&sheet, factor, of_sheet);
-    for (int i = 0; i < 3; i++) of.fluid[i] += of_sheet[i];
+    force->model->add_impulse(force, &residual->flow->fish[f].own, factor, y, of.fluid);
 
     // prescribed nodes
     for (int k = 0; k < fish_n_prescribed(fish); k++) {
@@ -167,14 +146,15 @@ static struct momenta momenta_of(struct residual *residual, const struct state *
 
 // ---- external forces
 
-// all external forces except images; call after pressure_update
+// all external forces except images; call after diagnostics_power
 static void external_force(struct residual *residual, int f, double t, const double *y, double force[3]) {
     const struct school *const school = residual->school;
     const struct state *const state = residual->state;
     const struct flow *const flow = residual->flow;
     const struct fish *const fish = &school->fish[f];
     const struct flow_at_body at_body = flow_at_body(flow, f);
-    const struct fluid_forces fluid = fluid_force_sum(fish, &at_body, (const double[2]){0, 0}, y);
+    const struct fluid_force *const on_fish = &residual->force[f];
+    const struct fluid_forces fluid = on_fish->model->forces(on_fish, &at_body, (const double[2]){0, 0}, y);
     const struct contact_terms contact = contact_terms(residual->contact, f, y);
 
     double tail[2];
@@ -183,10 +163,8 @@ static void external_force(struct residual *residual, int f, double t, const dou
     force[2] = fluid.resistive_moment + contact.moment + rod_clamp_terms(fish, t, y).moment;
     add_with_moment(force, tail[0], tail[1], fish->load_tip[0], fish->load_tip[1]);
 
-    if (residual->pressure[f]) {
-        const double *const separation = residual->pressure[f]->separation;
-        add_with_moment(force, y[fish->at.x], y[fish->at.y], -separation[0], -separation[1]);
-    }
+    const double *const separation = fluid.pressure.separation;
+    add_with_moment(force, y[fish->at.x], y[fish->at.y], -separation[0], -separation[1]);
 
     // constraint forces of prescribed nodes, from m a minus all forces, without the rate of the momentum of these
     // nodes: momenta.given is the integral of this rate
@@ -213,13 +191,11 @@ static void external_force(struct residual *residual, int f, double t, const dou
     flow_external_gust(school, t, 0, 0, &gust[0], &gust[1]);
     u -= gust[0];
     v -= gust[1];
-    if (!(fabs(u) + fabs(v) + fabs(school->shear) > 0) || !residual->pressure[f]) return;
+    if (!(fabs(u) + fabs(v) + fabs(school->shear) > 0) || !on_fish->model->add_moments) return;
     struct impulse_moments sum = impulse_of_wake(&state->wake[f], school, state->t, t - state->t);
     add_nascent(&sum, flow, state, f, t - state->t, tail);
     const int first = flow->points[f].first;
-    for (int c = 0; c < fish->n_control; c++) {
-        impulse_add(&sum, residual->pressure[f]->point[c].circulation, flow->x[first + c], flow->y[first + c]);
-    }
+    on_fish->model->add_moments(on_fish, flow->x + first, flow->y + first, &sum);
     const double factor = school->density * impulse_depth(fish);
     force[0] += factor * v * sum.circulation;
     force[1] -= factor * (u * sum.circulation + school->shear * sum.y);

@@ -4,7 +4,7 @@
 #define DIAGNOSTICS_MOMENTUM_H
 
 #include "base/mathematics.h"
-#include "force/pressure.h"
+#include "force/force_model.h"
 #include "school/residual.h"
 #include "state/state.h"
 
@@ -80,8 +80,8 @@ void diagnostics_forces(struct residual *residual, int f, double t, const double
 void diagnostics_fluid_force(const double resistive[2], const double reactive[2],
                              const struct pressure_forces *pressure, double force[2]);
 
-/* The forces of the pressure, moments about a point; with other force models all 0, and A_0 NaN. */
-struct pressure_forces diagnostics_pressure(struct residual *residual, int f, const double about[2], const double *y);
+/* The forces of the fluid on fish f, moments about a point. */
+struct fluid_forces diagnostics_fluid(struct residual *residual, int f, const double about[2], const double *y);
 
 /* Add the impulse of the external forces in the step that ended at t to the momentum balance of fish f, as
  * diagnostics_step adds works. n: number of values for the quadrature; times: the newest time first. n = 0: only store

@@ -11,7 +11,6 @@
 #include "fish/fish_motion.h"
 #include "flow/flow_at_bodies.h"
 #include "flow/flow_derivative.h"
-#include "force/fluid_force.h"
 #include "force/pressure.h"
 
 // ---- unknowns by slices of the layout
@@ -154,14 +153,14 @@ struct residual *residual_create(struct arena *arena, const struct school *schoo
     created->school = school;
     created->state = state;
     NEW(arena, created->joints, school->n_fish);
-    NEW(arena, created->pressure, school->n_fish);
+    NEW(arena, created->force, school->n_fish);
     NEW(arena, created->scratch, school->n_unknowns);
 
     // find the sizes of all fish
     int n_joints = 0, most_points = 0, most_columns = 0, most_rows = 0, has_edges = 0;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
-        if (fish_has_momentum(fish)) created->pressure[f] = pressure_create(arena, fish);
+        force_model_create(arena, fish, &created->force[f]);
         created->joints[f] = (struct range){n_joints, fish->n_joints};
         n_joints += fish->n_joints;
         const int points = flow_n_points(fish), columns = flow_n_columns(fish), rows = flow_n_rows(fish);
@@ -249,17 +248,27 @@ void residual_actuate(struct residual *residual, int f, double t, const double *
     actuation_find(fish, control_gait(fish, &state->control[f], t), y[fish->at.phi0], phi0_rate, &muscle);
 }
 
-void residual_forces(const struct residual *residual, int f, const double *y, double *value) {
+// update the force of the fluid on fish f; yp: NULL without the rates
+static void update_force(const struct residual *residual, int f, const double *y, const double *yp) {
+    const struct fluid_force *const force = &residual->force[f];
+    const struct flow_at_body flow = flow_at_body(residual->flow, f);
+    if (force->model->update) force->model->update(force, &flow, y, yp);
+}
+
+// residual_forces with the force of the fluid up to date
+static void forces_on_nodes(const struct residual *residual, int f, const double *y, double *value) {
     const struct fish *fish = &residual->school->fish[f];
+    const struct fluid_force *const force = &residual->force[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     contact_residual(residual->contact, f, y, value);
-    fluid_force_residual(fish, &flow, y, value);
-    if (residual->pressure[f]) {
-        pressure_update(residual->pressure[f], &flow, y);
-        pressure_residual(residual->pressure[f], value);
-    }
+    force->model->residual(force, &flow, y, value);
     value[fish->at.ax + fish->n_nodes - 1] -= fish->load_tip[0];
     value[fish->at.ay + fish->n_nodes - 1] -= fish->load_tip[1];
+}
+
+void residual_forces(const struct residual *residual, int f, const double *y, double *value) {
+    update_force(residual, f, y, NULL);
+    forces_on_nodes(residual, f, y, value);
 }
 
 // the rows ax, ay without the forces of residual_forces
@@ -288,36 +297,29 @@ static void evaluate_fish(struct residual *residual, const struct residual_mode 
     const double *const u = residual->flow->u + residual->flow->points[f].first;
     const double *const v = residual->flow->v + residual->flow->points[f].first;
 
-    // dx/dt = v and dv/dt = a. With momenta dp/dt = a, and v follows from p by the rows of the pressure; velocities
-    // that are given have no equation, and p follows from them
+    // dx/dt = v, and the rows of velocity and momentum
+    const struct fluid_force *const force = &residual->force[f];
     for (int i = 0; i < 2 * fish->n_nodes; i++) {
+        if (fish_is_prescribed(fish, i % fish->n_nodes, i / fish->n_nodes)) continue;
         value[fish->at.x + i] = yp[fish->at.x + i] - y[fish->at.vx + i];
-        if (!fish_has_momentum(fish)) {
-            value[fish->at.vx + i] = yp[fish->at.vx + i] - y[fish->at.ax + i];
-        } else if (mode->velocities_are_given) {
-            value[fish->at.vx + i] = 0;
-        } else {
-            value[fish->at.px + i] = yp[fish->at.px + i] - y[fish->at.ax + i];
-        }
     }
+    update_force(residual, f, y, NULL);
+    force->model->motion_residual(force, mode->velocities_are_given, y, yp, value);
 
     // equation of motion, divided by the node masses
     residual_actuate(residual, f, t, y);
     residual_of_body(residual, f, y, value);
     if (mode->forces) {
-        const struct flow_at_body flow = flow_at_body(residual->flow, f);
-        if (residual->pressure[f]) pressure_update(residual->pressure[f], &flow, y);
         for (int i = fish->at.ax; i < fish->at.ax + 2 * fish->n_nodes; i++) value[i] -= mode->forces[i];
     } else {
-        residual_forces(residual, f, y, value);
+        forces_on_nodes(residual, f, y, value);
     }
     for (int k = 0; k < fish->n_nodes; k++) {
         value[fish->at.ax + k] /= fish->mass[k];
         value[fish->at.ay + k] /= fish->mass[k];
     }
-    if (residual->pressure[f]) pressure_momentum_residual(residual->pressure[f], mode->velocities_are_given, y, value);
 
-    // the rows of prescribed nodes: position, velocity and acceleration are given
+    // of prescribed nodes position, velocity and acceleration are given, and the law of motion yields the reaction
     for (int k = 0; k < fish_n_prescribed(fish); k++) {
         double position[2], velocity[2], acceleration[2];
         fish_prescribed_node(fish, k, t, position, velocity, acceleration);
@@ -361,12 +363,9 @@ enum status residual_evaluate(struct residual *residual, const struct residual_m
 }
 
 void residual_reaction(const struct residual *residual, int f, const double *y, const double *yp, double *value) {
-    const struct fish *fish = &residual->school->fish[f];
-    struct pressure *const pressure = residual->pressure[f];
+    const struct fluid_force *const force = &residual->force[f];
     residual_balance(residual, f, y, value);
-    if (!pressure) return;
-    pressure_update_rate(pressure, y, yp);
-    for (int i = 0; i < 2 * fish->n_nodes; i++) value[fish->at.ax + i] += pressure->momentum_rate[i];
+    if (force->model->add_momentum_rate) force->model->add_momentum_rate(force, y, yp, value);
 }
 
 bool residual_is_differential(const struct school *school, const struct residual_mode *mode, int i) {
@@ -379,7 +378,7 @@ bool residual_is_differential(const struct school *school, const struct residual
         case UNKNOWN_X:
         case UNKNOWN_Y: return !is_given;
         case UNKNOWN_VX:
-        case UNKNOWN_VY: return !is_given && (!fish_has_momentum(fish) || mode->velocities_are_given);
+        case UNKNOWN_VY: return !is_given && (fish->at.second == fish->at.vx || mode->velocities_are_given);
         case UNKNOWN_PX:
         case UNKNOWN_PY: return !is_given && !mode->velocities_are_given;
         case UNKNOWN_CIRCULATION: return sheet_law(school, mode) != BOUND_SHEET_EDGE;

@@ -14,7 +14,7 @@
 #include "flow/flow.h"
 #include "flow/flow_derivative.h"
 #include "force/bound_sheet.h"
-#include "force/pressure.h"
+#include "force/force_model.h"
 #include "school/jacobian.h"
 #include "state/state.h"
 
@@ -92,7 +92,7 @@ struct residual {
     const struct state *state; /* wakes, control memory, time of the last event */
     struct flow *flow;
     struct contact *contact;
-    struct pressure **pressure;          /* of each fish; NULL unless force: pressure           (n_fish) */
+    struct fluid_force *force;           /* of the fluid on each fish                         (n_fish) */
     struct neighbours *neighbours;       /* workspace                                         (n_fish) */
     struct residual_couplings couplings; /* pairs of fish with a block in the Jacobian */
     struct range *joints;                /* of each fish                                     (n_fish) */
@@ -162,8 +162,8 @@ enum status residual_jacobian(struct residual *residual, const struct residual_m
                               const double *y, struct jacobian *jacobian);
 
 /* Set the derivatives of impermeability at the control points of every fish by the circulation shed by the same fish,
- * in the impermeability rows of value (n_unknowns); with force: pressure also the derivatives of the equation of
- * motion. All other rows are unchanged. Uses the flow of the last evaluation, at the unknowns y. While the nascent
+ * in the impermeability rows of value (n_unknowns), and where the sheet loads the body those of the equation of motion.
+ * All other rows are unchanged. Uses the flow of the last evaluation, at the unknowns y. While the nascent
  * stretch of a free sheet grows, these derivatives change more from step to step than all others. */
 void residual_by_shed(struct residual *residual, const double *y, double *value);
 

@@ -7,14 +7,13 @@
 #include "body/rod.h"
 #include "fish/fish_motion.h"
 #include "force/bound_sheet.h"
-#include "force/fluid_force.h"
-#include "force/reactive.h"
 #include "school/residual.h"
 
 // derivatives of the equations of fish f by the unknowns of fish g through the flow velocity
 static void flow_jacobian(const struct residual *residual, const struct residual_mode *mode, int f, int g,
                           const double *y, struct influence_block *block, struct coupling_block *rows) {
     const struct fish *fish = &residual->school->fish[f];
+    const struct fluid_force *const force = &residual->force[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     rows->n_rows = flow_n_rows(fish);
     rows->n_columns = flow_n_columns(&residual->school->fish[g]);
@@ -23,9 +22,8 @@ static void flow_jacobian(const struct residual *residual, const struct residual
     flow_derivative(residual->flow, f, g, COLUMNS_OF_ALL, block);
 
     if (!mode->forces) {
-        fluid_force_flow_jacobian(fish, &flow, block, y, rows);
-        if (residual->pressure[f]) pressure_flow_jacobian(residual->pressure[f], block, rows);
-        if (residual->pressure[f] && f == g) pressure_own_jacobian(residual->pressure[f], y, rows);
+        force->model->flow_jacobian(force, &flow, block, y, rows);
+        if (f == g && force->model->own_jacobian) force->model->own_jacobian(force, y, rows);
         contact_jacobian(residual->contact, f, g, y, rows);
     }
     bound_sheet_flow_jacobian(fish, block, y, rows);
@@ -36,8 +34,8 @@ static void flow_jacobian(const struct residual *residual, const struct residual
 
 // add the rows of a fish to its diagonal block: only entries that may differ from zero. The flow velocity at the
 // midpoint of an edge depends on the nodes of the edge and, with its wake, on the tail node and the circulation
-// shed through the nascent vortex; the flux at the tail depends on the nodes of the last two edges; with pressure, or
-// with images in walls, every row depends on every column.
+// shed through the nascent vortex; the flux at the tail depends on the nodes of the last two edges; where the sheet
+// loads the body, or with images in walls, every row depends on every column.
 static void add_own_rows(const struct residual *residual, const struct residual_mode *mode, const struct fish *fish,
                          const struct coupling_block *rows, struct sparse *own) {
     const int n_nodes = fish->n_nodes, n_places = 2 * n_nodes;
@@ -49,7 +47,7 @@ static void add_own_rows(const struct residual *residual, const struct residual_
         const bool is_place = c < n_places, is_shed = c == rows->n_columns - 1;
 
         const bool is_nascent = fish_feels_own_wake(fish) && (is_shed || (is_place && node == n_nodes - 1));
-        const int all = is_nascent || fish_has_momentum(fish) || residual->school->walls.n > 0;
+        const bool all = is_nascent || fish->at.full < fish->at.gamma || residual->school->walls.n > 0;
         const int first = all || node == 0 ? 0 : node - 1, last = all || node >= felt_at_tail ? n_nodes - 1 : node + 1;
 
         for (int k = first; (is_place || all) && k <= last; k++) {
@@ -67,6 +65,7 @@ static void fish_jacobian(struct residual *residual, const struct residual_mode 
     if (residual->stop && *residual->stop) return;
     const struct school *school = residual->school;
     const struct fish *fish = &school->fish[f];
+    const struct fluid_force *const force = &residual->force[f];
     struct jacobian_scratch *const jacobian_scratch = &residual->jacobian_scratch[omp_get_thread_num()];
     struct sparse *const own = jacobian->own[f];
     const double *const u = residual->flow->u + residual->flow->points[f].first;
@@ -74,18 +73,14 @@ static void fish_jacobian(struct residual *residual, const struct residual_mode 
 
     // own block: direct dependence on the unknowns
     sparse_begin(own);
-    const int second = fish_has_momentum(fish) ? fish->at.px : fish->at.vx, n = fish->n_nodes;
-    for (int i = 0; i < 2 * n; i++) {
+    const struct flow_at_body flow = flow_at_body(residual->flow, f);
+    if (force->model->update) force->model->update(force, &flow, y, NULL);
+    for (int i = 0; i < 2 * fish->n_nodes; i++) {
         sparse_add(own, fish->at.x + i, fish->at.x + i, cj);
         sparse_add(own, fish->at.x + i, fish->at.vx + i, -1);
-        // with momenta, the rows of prescribed components are the rows of pressure_momentum_row
-        if (!fish_has_momentum(fish) ||
-            pressure_momentum_row(fish, mode->velocities_are_given, i / n, i % n) != second + i) {
-            sparse_add(own, second + i, second + i, cj);
-            sparse_add(own, second + i, fish->at.ax + i, -1);
-        }
         sparse_add(own, fish->at.ax + i, fish->at.ax + i, 1);
     }
+    force->model->motion_jacobian(force, mode->velocities_are_given, cj, y, own);
     residual_actuate(residual, f, t, y);
     const struct actuation muscle = residual_muscle(residual, f);
     rod_jacobian(fish, &muscle, y, own);
@@ -94,16 +89,10 @@ static void fish_jacobian(struct residual *residual, const struct residual_mode 
     if (fish->damping == DAMPING_STRAIN && control_rate_varies(fish)) {
         double *const by_rate = jacobian_scratch->by_phi0_rate;
         rod_by_phi0_rate(fish, &muscle, y, by_rate);
-        control_rate_jacobian(fish, memory, t, since, y, fish->at.ax, 2 * n, by_rate, own);
+        control_rate_jacobian(fish, memory, t, since, y, fish->at.ax, 2 * fish->n_nodes, by_rate, own);
     }
-    const struct flow_at_body flow = flow_at_body(residual->flow, f);
     rod_clamp_jacobian(fish, t, y, own);
-    if (!mode->forces) fluid_force_jacobian(fish, &flow, y, own);
-    if (residual->pressure[f]) {
-        pressure_update(residual->pressure[f], &flow, y);
-        pressure_momentum_jacobian(residual->pressure[f], mode->velocities_are_given, y, own);
-        if (!mode->forces) pressure_jacobian(residual->pressure[f], own);
-    }
+    if (!mode->forces) force->model->jacobian(force, &flow, y, own);
     bound_sheet_jacobian(fish, u, v, y, own);
     bound_sheet_kutta_jacobian(fish, residual_sheet_law(residual, mode), cj, u, v, y, own);
     control_jacobian(fish, memory, t, since, y, own);
@@ -176,11 +165,11 @@ void residual_by_shed(struct residual *residual, const double *y, double *value)
         memset(scratch->rows.value, 0, (size_t)scratch->rows.n_rows * sizeof *scratch->rows.value);
         bound_sheet_flow_jacobian(fish, &scratch->block, y, &scratch->rows);
 
-        const int first = fish_has_momentum(fish) ? fish->at.ax : fish->at.gamma;
-        if (residual->pressure[f]) {
+        const int first = fish->at.full;
+        if (first < fish->at.gamma) {
+            const struct fluid_force *const force = &residual->force[f];
             const struct flow_at_body flow = flow_at_body(residual->flow, f);
-            fluid_force_flow_jacobian(fish, &flow, &scratch->block, y, &scratch->rows);
-            pressure_flow_jacobian(residual->pressure[f], &scratch->block, &scratch->rows);
+            force->model->flow_jacobian(force, &flow, &scratch->block, y, &scratch->rows);
         }
 
         memcpy(value + first, scratch->rows.value + (first - fish->at.ax),

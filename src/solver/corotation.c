@@ -151,10 +151,8 @@ void corotation_set_current(struct corotation *corotation, const double *y) {
 // map the slices of one body: to the current configuration, or, backwards, to the reference configuration
 static void map_body(const struct body *body, bool backwards, double *vector) {
     const struct layout *const at = &body->fish->at;
-    const int slices[] = {at->x, at->vx, at->px, at->ax};
-    for (int s = 0; s < 4 && body->has_moved; s++) {
-        if (s == 2 && !fish_has_momentum(body->fish)) continue;
-        double *const a = vector + slices[s];
+    for (int pairs = at->x; pairs < at->gamma && body->has_moved; pairs += 2 * body->fish->n_nodes) {
+        double *const a = vector + pairs;
         if (!backwards) rotate_nodes(body, 1, a);
         for (int m = 0; m < body->n_rigid; m++) {
             const int i = backwards ? body->n_rigid - 1 - m : m;

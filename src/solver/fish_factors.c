@@ -46,10 +46,10 @@ struct fish_factors *fish_factors_create(struct arena *arena, const struct fish 
     factors->arena = arena;
     factors->fish = fish;
     factors->block = block;
-    // with momenta the law of motion is as full as the rows of the sheet, so the positions count among the last columns
-    const bool is_full = fish_has_momentum(fish);
+    // where the law of motion is as full as the rows of the sheet, the positions count among the last columns
+    const bool is_full = fish->at.full < fish->at.gamma;
     factors->first = is_full ? fish->at.vx - fish->at.x : 0;
-    factors->n_rod = (is_full ? fish->at.ax : fish->at.gamma) - fish->at.x;
+    factors->n_rod = fish->at.full - fish->at.x;
     factors->n_sheet = block->n - factors->n_rod;
     factors->whole = sparse_factors_create(arena);
     factors->may_divide = is_full || fish->n_sheet >= MIN_POINTS;

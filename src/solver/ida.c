@@ -169,8 +169,8 @@ static enum status ida_create(struct arena *arena, void **created, struct residu
                               const struct integrator_options *options) {
     const struct school *const school = residual->school;
     const int n = school->n_unknowns, is_sheet = school->shedding == SHEDDING_SHEET;
-    int has_momentum = 0;
-    for (int f = 0; f < school->n_fish; f++) has_momentum |= fish_has_momentum(&school->fish[f]);
+    bool is_loaded = false;  // whether a sheet, with its nascent stretch, acts on a body
+    for (int f = 0; f < school->n_fish; f++) is_loaded |= school->fish[f].at.full < school->fish[f].at.gamma;
 
     struct ida *solver;
     NEW(arena, solver, 1);
@@ -208,7 +208,7 @@ static enum status ida_create(struct arena *arena, void **created, struct residu
                                            .max_with_new = max_with_new,
                                            .jacobian_cost = jacobian_cost,
                                            .kinds = is_sheet ? solver->kinds : NULL,
-                                           .is_periodic = has_momentum,
+                                           .is_periodic = is_loaded,
                                            .data = solver,
                                            .leading_coefficient = leading_coefficient,
                                            .update = is_sheet ? update_jacobian : NULL,

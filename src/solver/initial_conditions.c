@@ -87,8 +87,9 @@ enum status initial_conditions_create(struct arena *arena, struct initial_condit
     for (int i = 0; i < n; i++) {
         // with momenta no other equation depends on the acceleration of a node
         const struct unknown_place place = residual_place(residual->school, i);
+        const struct layout *const at = &residual->school->fish[place.fish].at;
         const bool is_acceleration = place.kind == UNKNOWN_AX || place.kind == UNKNOWN_AY;
-        const bool is_loose = is_acceleration && fish_has_momentum(&residual->school->fish[place.fish]);
+        const bool is_loose = is_acceleration && at->second > at->vx;
         c->scale[i] = residual_scale(residual->school, i);
         c->inverse_scale[i] = 1 / ((is_loose ? loose : 1) * c->scale[i]);
         c->kind[i] = -1;  // unknown
@@ -194,8 +195,7 @@ enum status initial_conditions_solve(struct initial_conditions *c, const struct 
     for (int f = 0; f < school->n_fish; f++) {
         const struct layout *at = &school->fish[f].at;
         for (int i = at->x; i < at->vx; i++) yp[i] = y[i + (at->vx - at->x)];
-        const int second = fish_has_momentum(&school->fish[f]) ? at->px : at->vx;
-        for (int i = second; i < at->ax; i++) yp[i] = y[i + (at->ax - second)];
+        for (int i = at->second; i < at->ax; i++) yp[i] = y[i + (at->ax - at->second)];
         if (c->kind[at->circulation] > 0) yp[at->circulation] = residual_shed_rate(c->residual, c->mode, f, y);
     }
     return STATUS_OK;

@@ -73,9 +73,8 @@ void integrator_rates_begin(struct integrator_rates *rates, const struct state *
 void integrator_rates_step(struct integrator_rates *rates, double t, struct state *state) {
     if (t <= rates->t[0]) return;
     for (int f = 0; f < rates->school->n_fish; f++) {
-        const struct fish *fish = &rates->school->fish[f];
-        const int end = fish_has_momentum(fish) ? fish->at.circulation : fish->at.gamma;
-        for (int i = fish->at.gamma; i < end; i++) {
+        const struct layout *const at = &rates->school->fish[f].at;
+        for (int i = at->gamma; i < at->rated; i++) {
             // the slope of the parabola through three steps, or of the line through two
             const double newest = (state->y[i] - rates->y[0][i]) / (t - rates->t[0]);
             state->yp[i] = newest;

@@ -238,7 +238,7 @@ static void find_change(const struct jacobian *jacobian, int f, const double *de
     const struct fish *fish = &jacobian->school->fish[f];
     const struct sparse *const own = jacobian->own[f];
     const int column = fish->at.circulation - fish->at.x, end = fish->at.gamma + fish->n_control - fish->at.x;
-    const int first = (fish_has_momentum(fish) ? fish->at.ax : fish->at.gamma) - fish->at.x;
+    const int first = fish->at.full - fish->at.x;
     memset(change, 0, (size_t)own->n * sizeof *change);
     for (int i = first; i < end; i++) {
         if (!sparse_is_masked(own, fish->at.x + i)) change[i] = derivative[fish->at.x + i];

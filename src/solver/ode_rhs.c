@@ -53,7 +53,7 @@ struct ode_rhs *ode_rhs_create(struct arena *arena, struct residual *residual) {
         struct ode_slices *const at = &d->at[f];
         at->strengths = d->n;
         at->velocities = at->strengths + fish->n_sheet + (residual_shed_is_algebraic(residual) ? 1 : 0);
-        at->end = d->n = at->velocities + (fish_has_momentum(fish) ? 2 * fish->n_nodes : 0);
+        at->end = d->n = at->velocities + fish->at.second - fish->at.vx;
         if (fish->n_nodes > max_nodes) max_nodes = fish->n_nodes;
         for (int g = 0; g < school->n_fish; g++) {
             struct influence_block *const block = &d->influence[f * school->n_fish + g];
@@ -81,6 +81,7 @@ static void assemble_fish(struct ode_rhs *d, int f, double t, const double *y, d
     const struct fish *fish = &school->fish[f];
     const bool edge = residual_shed_is_algebraic(residual);
     const struct ode_slices at = d->at[f];
+    const bool has_velocities = at.end > at.velocities;
     const int first = residual->flow->points[f].first, row = at.strengths, last = fish->n_sheet - 1;
 
     // Kelvin's theorem, and the condition at the edge
@@ -105,7 +106,7 @@ static void assemble_fish(struct ode_rhs *d, int f, double t, const double *y, d
         for (int j = last - 1; j <= last; j++) *entry(d, row + c, row + j) += bound_sheet_end_correction(fish, c, j);
 
         const struct stencil *const point = &fish->control_point[c];
-        for (int m = 0; m < 2 * point->n && fish_has_momentum(fish); m++) {
+        for (int m = 0; m < 2 * point->n && has_velocities; m++) {
             const int i = m / point->n, k = m % point->n, column = at.velocities + i * fish->n_nodes + point->node[k];
             *entry(d, row + c, column) -= point->weight[k] * normal[i];
         }
@@ -130,8 +131,8 @@ static void assemble_fish(struct ode_rhs *d, int f, double t, const double *y, d
         *entry(d, at.velocities + m, at.velocities + m) = 1;
         rhs[at.velocities + m] = y[(fish_is_prescribed(fish, k, i) ? fish->at.vx : fish->at.px) + m];
     }
-    for (int j = 0; j < fish->n_sheet && fish_has_momentum(fish); j++) {
-        pressure_momentum_by_strength(fish, j, y + fish->at.x, d->force);
+    for (int j = 0; j < fish->n_sheet && has_velocities; j++) {
+        residual->force[f].model->momentum_by_strength(fish, j, y + fish->at.x, d->force);
         for (int m = 0; m < 2 * fish->n_nodes; m++) {
             const int i = m / fish->n_nodes, k = m % fish->n_nodes;
             if (fish_is_prescribed(fish, k, i)) continue;
@@ -252,12 +253,12 @@ static enum status find_accelerations(struct ode_rhs *d, int f, double t, double
     }
     for (int i = 0; i < n; i++) y[(i % 2 == 0 ? fish->at.ax : fish->at.ay) + i / 2] = force[i];
 
-    // the momenta of prescribed nodes; residual_balance has updated the pressure
-    const struct pressure *const pressure = d->residual->pressure[f];
-    for (int m = 0; m < n && pressure; m++) {
+    // the momenta of prescribed nodes; residual_balance has updated the momenta of the fluid
+    const double *const momentum = d->residual->force[f].momentum;
+    for (int m = 0; m < fish->at.ax - fish->at.px; m++) {
         const int k = m % fish->n_nodes;
         if (!fish_is_prescribed(fish, k, m / fish->n_nodes)) continue;
-        y[fish->at.px + m] = y[fish->at.vx + m] + pressure->momentum[m] / fish->mass[k];
+        y[fish->at.px + m] = y[fish->at.vx + m] + momentum[m] / fish->mass[k];
     }
     return STATUS_OK;
 }
@@ -295,7 +296,7 @@ enum status ode_rhs_rates(struct ode_rhs *d, double t, double *y, double *yp) {
         residual_actuate(d->residual, f, t, y);
         TRY(find_accelerations(d, f, t, y));
         memcpy(yp + at->x, y + at->vx, size);
-        memcpy(yp + (fish_has_momentum(fish) ? at->px : at->vx), y + at->ax, size);
+        memcpy(yp + at->second, y + at->ax, size);
         yp[at->circulation] =
             residual_shed_is_algebraic(d->residual) ? 0 : residual_shed_rate(d->residual, &residual_run, f, y);
         if (!isfinite(y[at->ax]) || !isfinite(y[at->ay])) {

@@ -296,7 +296,7 @@ static void verlet_kick(const struct fish *fish, double h, double *y) {
     const struct layout *const at = &fish->at;
     for (int k = 0; k < 2 * fish->n_nodes; k++) {
         y[at->vx + k] += h / 2 * y[at->ax + k];
-        if (fish_has_momentum(fish)) y[at->px + k] = y[at->vx + k];
+        y[at->second + k] = y[at->vx + k];
     }
 }
 

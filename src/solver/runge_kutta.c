@@ -40,11 +40,9 @@ static enum status runge_kutta_evaluate(struct runge_kutta *solver, double t, co
     bool is_known = solver->known && t == solver->known_t && solver->state->event == solver->known_event;
     for (int f = 0; f < school->n_fish && is_known; f++) {
         const struct layout *at = &school->fish[f].at;
-        // with momenta the velocities are algebraic
-        const int second = fish_has_momentum(&school->fish[f]) ? at->px : at->vx;
-        const size_t places = (size_t)(at->vx - at->x) * sizeof *y, rest = (size_t)(at->ax - second) * sizeof *y;
+        const size_t places = (size_t)(at->vx - at->x) * sizeof *y, rest = (size_t)(at->ax - at->second) * sizeof *y;
         is_known = memcmp(y + at->x, solver->work + at->x, places) == 0 &&
-                   memcmp(y + second, solver->work + second, rest) == 0 &&
+                   memcmp(y + at->second, solver->work + at->second, rest) == 0 &&
                    (residual_shed_is_algebraic(residual) ||
                     memcmp(y + at->circulation, solver->work + at->circulation, sizeof *y) == 0);
     }

@@ -66,14 +66,16 @@ void state_find_rates(struct state *state, const struct school *school, int shed
     const int n = school->n_unknowns;
 
     for (int f = 0; f < school->n_fish; f++) {
-        const struct fish *const fish = &school->fish[f];
-        const int has_momentum = fish_has_momentum(fish);
-        for (int i = has_momentum ? fish->at.vx : fish->at.circulation; i <= fish->at.circulation; i++) {
-            const int is_differential = i == fish->at.circulation && !shed_is_algebraic;
-            if (is_differential || (i >= fish->at.px && i < fish->at.gamma)) continue;
-            double sum = slope[state->n_past][0] * state->y[i];
-            for (long k = 0; k < state->n_past; k++) sum += slope[state->n_past][k + 1] * state->past[k * n + i];
-            state->yp[i] = sum / school->interval;
+        // velocities that follow from momenta, bound strengths whose rates act, circulation shed
+        const struct layout *const at = &school->fish[f].at;
+        const int slices[][2] = {
+            {at->vx, at->second}, {at->gamma, at->rated}, {at->circulation, at->circulation + shed_is_algebraic}};
+        for (int s = 0; s < 3; s++) {
+            for (int i = slices[s][0]; i < slices[s][1]; i++) {
+                double sum = slope[state->n_past][0] * state->y[i];
+                for (long k = 0; k < state->n_past; k++) sum += slope[state->n_past][k + 1] * state->past[k * n + i];
+                state->yp[i] = sum / school->interval;
+            }
         }
     }
 

@@ -42,7 +42,7 @@ static void added_momentum(struct setup *setup, const double *velocity, double *
     const struct residual_mode start = {.shed = SHED_IS_GIVEN, .velocities_are_given = true};
     school_ok(initial_conditions_create(test_arena(), &solver, setup->residual));
     school_ok(initial_conditions_solve(solver, &start, 0, setup->state->y, setup->state->yp));
-    for (int k = 0; k < fish->n_nodes; k++) momentum[k] = setup->residual->pressure[0]->momentum[fish->n_nodes + k];
+    for (int k = 0; k < fish->n_nodes; k++) momentum[k] = setup->residual->force[0].momentum[fish->n_nodes + k];
 }
 
 // Heave: pi/4 rho L^2. Rotation about the middle: pi/128 rho L^4. The error of order M^-4 comes from the end
@@ -257,7 +257,7 @@ TEST(force_and_reaction_are_those_of_the_jump) {
     school_measure(simulation, 0.3);
     const struct fish *fish = simulation->school->fish;
     const struct diagnostics_fish *of = simulation->diagnostics->fish;
-    const struct pressure *pressure = simulation->residual->pressure[0];
+    const struct pressure *pressure = simulation->residual->force[0].pressure;
     double sum[2] = {0, 0}, inertia[2] = {0, 0};
     for (int c = 0; c < fish->n_control; c++) {
         const struct direction *body = &pressure->point[c].body;
@@ -304,7 +304,7 @@ TEST(the_pressure_acts_on_the_depth_of_an_edge) {
         ".1, .1, .1], depth_table: [.2, .3, .5, .4]}, motion: {prescribed: all, pitch: 5, frequency: 1}}]\n");
     school_measure(simulation, 0.1);
     const struct fish *const fish = simulation->school->fish;
-    const struct pressure *const pressure = simulation->residual->pressure[0];
+    const struct pressure *const pressure = simulation->residual->force[0].pressure;
     const double *const y = simulation->state->y, *const yp = simulation->state->yp;
     double want[4][2] = {{0}};
     for (int c = 0; c < fish->n_control; c++) {
@@ -477,7 +477,7 @@ TEST(a_strength_that_is_singular_at_the_tail_has_no_kink) {
     struct setup setup;
     build_plate(&setup, 17, 33, "density: 1");
     const struct fish *const fish = setup.school->fish;
-    struct pressure *const pressure = setup.residual->pressure[0];
+    struct pressure *const pressure = setup.residual->force[0].pressure;
     double *const y = setup.state->y, *const yp = setup.state->yp, u[64], v[64];
     const double speed = 3, h = pi / fish->n_control;
     struct flow_at_body flow = {.u = u, .v = v};
@@ -516,7 +516,7 @@ TEST(a_kink_at_the_tail_has_its_exact_circulation) {
         "fish: [{nodes: 17, sheet_points: 33, force: pressure, pressure: {span: finite},\n"
         "        body: {profile: uniform, thickness: 0.1, depth: 1}}]\n");
     const struct fish *const fish = setup.school->fish;
-    struct pressure *const pressure = setup.residual->pressure[0];
+    struct pressure *const pressure = setup.residual->force[0].pressure;
     double *const y = setup.state->y, *const yp = setup.state->yp, zero[64] = {0}, div[64];
     const struct flow_at_body flow = {.u = zero, .v = zero, .div = div, .edge = zero};
     const double h = pi / fish->n_control;

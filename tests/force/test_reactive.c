@@ -5,7 +5,7 @@
 
 #include "fish/fish_motion.h"
 #include "flow/flow_at_bodies.h"
-#include "force/fluid_force.h"
+#include "force/edge_force.h"
 #include "force/reactive.h"
 #include "school.h"
 
@@ -77,7 +77,7 @@ TEST(force_follows_from_lagrange_s_equations_of_the_kinetic_energy) {
 
         const struct edge edge = edge_at(fish, 0, y);
         double force[2][2];
-        reactive_force(fish, 0, &edge, edge.velocity, still, force);
+        reactive_of_lagrange.force(fish, 0, &edge, edge.velocity, still, force);
         for (int q = 0; q < 4; q++) {
             const double h = 1e-4;
             double before[8], after[8];
@@ -98,9 +98,9 @@ TEST(a_stream_that_accelerates_acts_as_a_body_that_does_not_and_pushes_what_it_s
         struct edge edge = edge_at(fish, k, setup.state->y);
         const double w[2] = {edge.velocity[0] - u[0], edge.velocity[1] - u[1]};
         double in_stream[2][2], at_rest[2][2];
-        reactive_force(fish, k, &edge, w, b, in_stream);
+        reactive_of_lagrange.force(fish, k, &edge, w, b, in_stream);
         for (int i = 0; i < 2; i++) edge.acceleration[i] -= b[i];
-        reactive_force(fish, k, &edge, w, still, at_rest);
+        reactive_of_lagrange.force(fish, k, &edge, w, still, at_rest);
         const double displaced = 1000 * pi * fish->thickness[k] * 0.2 / 4 / 6;
         for (int end = 0; end < 2; end++) {
             for (int i = 0; i < 2; i++) NEAR(in_stream[end][i], at_rest[end][i] + displaced * b[i] / 2, 1e-12, 1e-13);
@@ -130,7 +130,7 @@ static void forces_on_plate(const char *motion, double t, double force[7][2]) {
 
     const double still[64] = {0};
     const struct flow_at_body flow = {.u = still, .v = still};
-    fluid_force_residual(fish, &flow, y, setup.value);
+    edge_force_residual(setup.residual->force, &flow, y, setup.value);
     for (int k = 0; k < 7; k++) {
         force[k][0] = -setup.value[fish->at.ax + k];
         force[k][1] = -setup.value[fish->at.ay + k];

@@ -20,7 +20,7 @@ TEST(a_body_that_glides_reads_the_stagnation_pressure_at_the_nose) {
     for (int i = 0; i < fish->n_sensors; i++) {
         const double s = fish->sensor[i], pressure = 2 * 1.5 * 1.5 / 2 * (1 - s / (s + 0.0025));
         for (int side = 0; side < 2; side++)
-            NEAR(simulation->residual->pressure[0]->sensor[side][i], pressure, 1e-9, 0);
+            NEAR(simulation->residual->force[0].pressure->sensor[side][i], pressure, 1e-9, 0);
     }
 }
 
@@ -133,7 +133,7 @@ static void compare_with_differences(double t, const char *keys, const char *fis
     school_run(simulation, t - 0.0025);
     for (int c = 0; c < of->n_control; c++) before[c] = potential(simulation, t, 0, c, n_mirrors, mirrors);
     school_measure(simulation, t);
-    for (int c = 0; c < of->n_control; c++) rate[c] = simulation->residual->pressure[0]->point[c].potential_rate;
+    for (int c = 0; c < of->n_control; c++) rate[c] = simulation->residual->force[0].pressure->point[c].potential_rate;
     school_run(simulation, t + 0.0025);
     // the last two points are nearer to the tail than the stretches of an interval
     for (int c = 0; c < of->n_control - 2; c++) {
@@ -179,7 +179,7 @@ TEST(both_sides_differ_by_the_jump) {
         "        sheet_points: 49, body: {profile: uniform, thickness: 1e-3}, wave: {ramp: 0.2}},\n"
         "       {pressure: {span: infinite}, start: {position: [0.2, 0.4]}}]\n");
     school_measure(simulation, 0.5);
-    struct pressure *const pressure = simulation->residual->pressure[0];
+    struct pressure *const pressure = simulation->residual->force[0].pressure;
     for (int i = 0; i < 3; i++) {
         const int c = 12 * (i + 1);
         const double jump = pressure_jump(pressure, c, simulation->state->y, simulation->state->yp);
@@ -202,8 +202,8 @@ TEST(mirrored_fish_exchange_left_and_right) {
     }
     for (int i = 0; i < 2; i++) {
         for (int side = 0; side < 2; side++) {
-            const double one = two[0]->residual->pressure[0]->sensor[side][i];
-            NEAR(two[1]->residual->pressure[0]->sensor[1 - side][i], one, 1e-6, 1e-6);
+            const double one = two[0]->residual->force[0].pressure->sensor[side][i];
+            NEAR(two[1]->residual->force[0].pressure->sensor[1 - side][i], one, 1e-6, 1e-6);
             ABOVE(fabs(one), 0.1);
         }
     }

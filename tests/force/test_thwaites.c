@@ -84,7 +84,7 @@ TEST(layers_run_in_the_direction_of_the_flow) {
 
 static struct thwaites_friction friction_of(struct simulation *simulation) {
     simulate_measure(simulation);
-    return thwaites_friction(simulation->residual->pressure[0], simulation->state->y, simulation->state->yp);
+    return thwaites_friction(simulation->residual->force[0].pressure, simulation->state->y, simulation->state->yp);
 }
 
 static struct simulation *plate(const char *stream, double thickness) {
@@ -161,7 +161,7 @@ TEST(a_sheet_is_as_strong_as_its_strength_over_its_depth) {
         "{prescribed: all},\n        drag: {skin: laminar}, body: {profile: uniform, depth: 0.25}}]\n");
     school_run(simulation, 0.2);
     struct fish *const fish = &simulation->school->fish[0];
-    struct pressure *const pressure = simulation->residual->pressure[0];
+    struct pressure *const pressure = simulation->residual->force[0].pressure;
     const double *const y = simulation->state->y;
     const struct thwaites_friction whole = friction_of(simulation);
     for (int c = 0; c < fish->n_control; c++) {

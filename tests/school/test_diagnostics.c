@@ -642,7 +642,7 @@ static void record_events(const char *text, int n_events, double *value) {
                                                (y[fish->at.y + k] - of->com[1]) * y[fish->at.vx + k]);
         }
         value[POWER] = of->pressure.pressure_power;
-        value[JUMP] = pressure_jump(residual->pressure[0], fish->n_control / 2, y, yp);
+        value[JUMP] = pressure_jump(residual->force[0].pressure, fish->n_control / 2, y, yp);
     }
 }
 
@@ -714,7 +714,7 @@ TEST(moments_follow_the_origin) {
     // M(a) = M(0) - a x F
     struct simulation *const simulation = school_simulation(TIME "fish: [{}]\n");
     school_measure(simulation, 0.8);
-    const struct pressure *const pressure = simulation->residual->pressure[0];
+    const struct pressure *const pressure = simulation->residual->force[0].pressure;
     const double a[2] = {3, -2}, *const y = simulation->state->y;
     const struct pressure_forces at_zero = pressure_sum(pressure, (const double[]){0, 0}, y);
     const struct pressure_forces at_a = pressure_sum(pressure, a, y);

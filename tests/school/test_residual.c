@@ -246,7 +246,8 @@ TEST(jacobian_agrees_with_differences_where_the_suction_ends) {
         value_of_school(&setup, setup.state->y, setup.state->yp, setup.value);
         for (int f = 0; f < 2; f++) {
             const double about[2] = {0, 0};
-            const struct pressure_forces forces = pressure_sum(setup.residual->pressure[f], about, setup.state->y);
+            const struct pressure_forces forces =
+                pressure_sum(setup.residual->force[f].pressure, about, setup.state->y);
             setup.school->fish[f].suction_limit = factor[i] * fabs(forces.leading_edge_a0);
         }
         school_compare(&setup, value_of_school, NULL, "limited suction");

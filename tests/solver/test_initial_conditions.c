@@ -134,7 +134,7 @@ TEST(momenta_follow_at_the_start_and_velocities_later) {
             NEAR(y[(start ? at->vy : at->py) + k], before[(start ? at->vy : at->py) + k], 0, 0);
             ABOVE(fabs(y[(start ? at->py : at->vy) + k] - before[(start ? at->py : at->vy) + k]), 1e-6);
         }
-        const double *const added = setup.residual->pressure[0]->momentum;
+        const double *const added = setup.residual->force[0].momentum;
         for (int i = 0; i < 14; i++) {
             NEAR(y[at->px + i], y[at->vx + i] + added[i] / setup.school->fish[0].mass[i % 7], 1e-10, 1e-10);
         }

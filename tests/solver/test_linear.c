@@ -353,7 +353,7 @@ static double replace(struct system *system, const double *by_shed) {
         const int column = at->circulation - at->x, kelvin = at->circulation - 1;
         for (int64_t e = own->column_start[column]; e < own->column_start[column + 1]; e++) {
             const int64_t row = at->x + own->row_index[e];
-            const int first = fish_has_momentum(&system->setup.school->fish[f]) ? at->ax : at->gamma;
+            const int first = at->full;
             if (row < first || row >= kelvin || sparse_is_masked(own, (int)row)) continue;
             change = fmax(change, fabs(by_shed[row] - own->value[e]));
             own->value[e] = by_shed[row];

@@ -42,8 +42,7 @@ static void added_momentum(struct simulation *simulation, const double *velocity
     for (int k = 0; k < fish->n_nodes; k++) y[fish->at.vy + k] = velocity[k];
     const struct residual_mode start = {.shed = SHED_IS_GIVEN, .velocities_are_given = true};
     verify_ok(initial_conditions_solve(simulation->consistent, &start, 0, y, simulation->state->yp));
-    memcpy(momentum, simulation->residual->pressure[0]->momentum + fish->n_nodes,
-           (size_t)fish->n_nodes * sizeof *momentum);
+    memcpy(momentum, simulation->residual->force[0].momentum + fish->n_nodes, (size_t)fish->n_nodes * sizeof *momentum);
 }
 
 // the added mass of one motion by another

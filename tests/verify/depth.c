@@ -73,7 +73,7 @@ static double added_mass_part(double depth, int n_sheet) {
     const struct residual_mode start = {.shed = SHED_IS_GIVEN, .velocities_are_given = true};
     verify_ok(initial_conditions_create(simulation->arena, &initial, residual));
     verify_ok(initial_conditions_solve(initial, &start, 0, y, simulation->state->yp));
-    for (int k = 0; k < fish->n_nodes; k++) mass += residual->pressure[0]->momentum[fish->n_nodes + k];
+    for (int k = 0; k < fish->n_nodes; k++) mass += residual->force[0].momentum[fish->n_nodes + k];
     return mass / (pi / 4 * depth);
 }
 

@@ -89,8 +89,8 @@ static void check_passing_vortex(void) {
                          pressure = -creal(sums.rate) - (speed * speed - 1) / 2;
             verify_value(verify_text("vortex beside a plate, t = %g: pressure at %g, %s", times[i], place[k % 3],
                                      is_right ? "right" : "left"),
-                         "conformal mapping", pressure, simulation->residual->pressure[0]->sensor[is_right][k % 3],
-                         is_fast ? 5e-4 : 5e-5);
+                         "conformal mapping", pressure,
+                         simulation->residual->force[0].pressure->sensor[is_right][k % 3], is_fast ? 5e-4 : 5e-5);
         }
     }
 }
@@ -116,7 +116,7 @@ static void check_gust(double k, double bound) {
     for (int n = 1; n <= per_period; n++) {
         verify_run(simulation, (n_periods - 1 + (double)n / per_period) * period);
         simulate_measure(simulation);
-        double *const *const sensor = simulation->residual->pressure[0]->sensor;
+        double *const *const sensor = simulation->residual->force[0].pressure->sensor;
         const double complex wave = 2.0 / per_period * cexp(-I * omega * simulation->state->t) / v;
         for (int i = 0; i < 3; i++) {
             jump[i] += (sensor[0][i] - sensor[1][i]) * wave;
@@ -147,7 +147,7 @@ static struct frictions mean_friction(struct simulation *simulation, double from
         verify_run(simulation, from + i * duration / n);
         simulate_measure(simulation);
         const struct thwaites_friction sides =
-            thwaites_friction(simulation->residual->pressure[0], simulation->state->y, simulation->state->yp);
+            thwaites_friction(simulation->residual->force[0].pressure, simulation->state->y, simulation->state->yp);
         mean.sides += (sides.force[0][0] + sides.force[1][0]) / n;
         mean.law += simulation->diagnostics->fish[0].friction_force[0] / n;
     }

@@ -1,11 +1,11 @@
-/* test_fluid_force.c: the forces of the fluid on the nodes: doc/model.md, section 9. */
+/* test_edge_force.c: the forces of the fluid on the nodes: doc/model.md, section 9. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "body/rod.h"
 #include "flow/flow_at_bodies.h"
-#include "force/fluid_force.h"
+#include "force/edge_force.h"
 #include "school.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
@@ -25,7 +25,7 @@ static void value_of_forces(struct setup *setup, const double *y, const double *
     for (int f = 0; f < setup->school->n_fish; f++) {
         const struct fish *fish = &setup->school->fish[f];
         const struct flow_at_body flow = flow_at_body(setup->residual->flow, f);
-        fluid_force_residual(fish, &flow, y, value);
+        edge_force_residual(&setup->residual->force[f], &flow, y, value);
         per_mass(fish, value);
     }
 }
@@ -33,12 +33,12 @@ static void value_of_forces(struct setup *setup, const double *y, const double *
 static void jacobian_of_forces(struct setup *setup, double cj, const double *y, struct sparse *jacobian) {
     (void)cj;
     for (int f = 0; f < setup->school->n_fish; f++) {
-        const struct fish *fish = &setup->school->fish[f];
+        const struct fluid_force *const force = &setup->residual->force[f];
         const struct flow_at_body flow = flow_at_body(setup->residual->flow, f);
-        fluid_force_jacobian(fish, &flow, y, jacobian);
+        edge_force_jacobian(force, &flow, y, jacobian);
         for (int g = 0; g < setup->school->n_fish; g++) {
             struct jacobian_scratch *const through = school_influence(setup, f, g);
-            fluid_force_flow_jacobian(fish, &flow, &through->block, y, &through->rows);
+            edge_force_flow_jacobian(force, &flow, &through->block, y, &through->rows);
             school_add_rows(setup, f, g, jacobian);
         }
     }
@@ -87,7 +87,7 @@ static void force_on_plate(const char *keys, double vx, double vy, double ay, do
 
     const double still[64] = {0};
     const struct flow_at_body flow = {.u = still, .v = still};
-    fluid_force_residual(fish, &flow, setup.state->y, setup.value);
+    edge_force_residual(setup.residual->force, &flow, setup.state->y, setup.value);
     force[0] = force[1] = 0;
     for (int k = 0; k < fish->n_nodes; k++) {
         force[0] -= setup.value[fish->at.ax + k];
@@ -142,10 +142,10 @@ TEST(powers_are_those_of_the_forces) {
         const struct fish *fish = setup.school->fish;
         const struct flow_at_body flow = flow_at_body(setup.residual->flow, 0);
         const double *const y = setup.state->y;
-        fluid_force_residual(fish, &flow, y, setup.value);
+        edge_force_residual(setup.residual->force, &flow, y, setup.value);
         double power = 0;
         for (int k = 0; k < 2 * fish->n_nodes; k++) power -= setup.value[fish->at.ax + k] * y[fish->at.vx + k];
-        const struct fluid_power got = fluid_force_power(fish, &flow, y);
+        const struct fluid_power got = edge_force_power(setup.residual->force, &flow, y);
         NEAR(got.drag + got.added_mass + got.wake, power, 0, 1e-13);
         ABOVE(fabs(got.drag), 1e-3);
         ABOVE(fabs(got.added_mass), 1e-3);
@@ -169,7 +169,7 @@ TEST(friction_is_the_tangential_part_of_the_drag) {
     double power = 0, moment = 0, resistive_moment = 0;
     for (int k = 0; k < fish->n_edges; k++) {
         const struct edge edge = edge_at(fish, k, y);
-        const struct fluid_forces on = fluid_force_of_edge(fish, &flow, k, about, y);
+        const struct fluid_forces on = edge_force_of_edge(setup.residual->force, &flow, k, about, y);
         NEAR(edge_dot(on.friction, edge.t), edge_dot(on.resistive, edge.t), 0, 1e-12);
         NEAR(edge_dot(on.friction, edge.n), 0, 1e-12, 0);
         power += edge_dot(on.friction, edge.velocity);
@@ -177,8 +177,8 @@ TEST(friction_is_the_tangential_part_of_the_drag) {
         moment += arm[0] * on.friction[1] - arm[1] * on.friction[0];
         resistive_moment += arm[0] * on.resistive[1] - arm[1] * on.resistive[0];
     }
-    const struct fluid_forces sum = fluid_force_sum(fish, &flow, about, y);
-    NEAR(fluid_force_power(fish, &flow, y).friction, power, 0, 1e-12);
+    const struct fluid_forces sum = edge_force_sum(setup.residual->force, &flow, about, y);
+    NEAR(edge_force_power(setup.residual->force, &flow, y).friction, power, 0, 1e-12);
     NEAR(sum.friction_moment, moment, 0, 1e-12);
     NEAR(sum.resistive_moment, resistive_moment, 0, 1e-12);
     ABOVE(fabs(moment), 1e-3);
@@ -191,7 +191,7 @@ TEST(added_mass_takes_up_no_tangential_acceleration) {
     for (int k = 0; k < fish->n_nodes; k++) setup.state->y[fish->at.ax + k] = 3;
     const double still[64] = {0};
     const struct flow_at_body flow = {.u = still, .v = still};
-    fluid_force_residual(fish, &flow, setup.state->y, setup.value);
+    edge_force_residual(setup.residual->force, &flow, setup.state->y, setup.value);
 
     // the normal of a body along 180 degrees is (0, 1) within rounding
     for (int i = fish->at.ax; i < fish->at.gamma; i++) NEAR(setup.value[i], 0, 1e-13, 0);
