@@ -173,6 +173,12 @@ static void check_wake(const struct check *check) {
     complain_if(is_other && wake->taper > 0, check, "wake.taper", only_sheet);
     complain_if(is_other && wake->taper_beside > 0, check, "wake.taper_beside", only_sheet);
 
+    bool is_finite = false;
+    const struct school_parameters *const school = &check->values->school;
+    for (int f = 0; f < school->n_fish; f++) is_finite |= fish_is_strip(&school->fish[f]);
+    complain_if(!is_finite && fabs(wake->leg_length - 1) > 0, check, "wake.leg_length",
+                "has an effect only with 'pressure.span: finite': remove the key");
+
     static const char no_beat[] = "is in beats, but no fish beats: give seconds";
     const bool lacks_beat = wake->lifetime.beats > 0 && !(lifetime > 0);
     complain_if(lacks_beat, check, "wake.lifetime", no_beat);
@@ -185,7 +191,6 @@ static void check_wake(const struct check *check) {
                 "%g vortices in the wake of a fish; the maximum is %g", n_vortices, max_vortices);
 
     // a lower bound of the memory: vortices, and full matrices of the sheets
-    const struct school_parameters *const school = &check->values->school;
     const double most = case_table_row("fish.sheet_points")->bounds.max;  // more are refused by check_derived
     double of_sheets = 0;
     for (int f = 0; f < school->n_fish; f++) of_sheets += 32 * pow(fmin(school->fish[f].sheet_points, most), 2);

@@ -225,6 +225,9 @@ const struct key case_table[] = {
     {"wake.taper_beside", REAL, AT(school.wake.taper_beside), NULL, FROM(0), "",
      .meaning = "shedding sheet: the same for vortices beside the body", .derived = "0.07 with shedding sheet, else 0",
      .choice = {"wake.shedding", "sheet", 0.07, 0}, .follows = WORDS("wake.shedding")},
+    {"wake.leg_length", REAL, AT(school.wake.leg_length), "1", FROM(0), "",
+     .meaning = "pressure.span finite: factor of the length s(d) of the legs of the vortex rings in the wake "
+                "(doc/model.md, section 18), a choice of the model"},
     {"wake.lifetime", DURATION, AT(school.wake.lifetime), NULL, ABOVE(0), "s",
      .meaning = "age at which a vortex is removed, in s or in beats of the slowest fish, such as '3 beats'",
      .derived = "8 beats; 2 s if no fish beats", .derive = derive_wake, .cause = "fish.wave.frequency",

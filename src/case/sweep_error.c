@@ -21,6 +21,8 @@ const struct sweep_error_key sweep_error_keys[SWEEP_N_ERROR_KEYS] = {
     {"wake.smoothing", NULL, SWEEP_MODEL, {0, 0}, 0.5, .order = 1},
     {"sheet.smoothing", NULL, SWEEP_MODEL, {0, 0}, 0.5, .order = 1},
     {"wake.taper", "wake.taper_beside", SWEEP_MODEL, {0, 0}, 0.5, .order = 1},
+    {"wake.leg_length", NULL, SWEEP_MODEL, .n_levels = 2, .level = {0.5, 2}, .switch_path = "fish.pressure.span",
+     .switch_value = SPAN_FINITE},
     {"fish.force", "fish.drag.skin", SWEEP_MODEL, .n_levels = 2, .level = {FORCE_REACTIVE, FORCE_PRESSURE}},
     {"fish.pressure.span", NULL, SWEEP_MODEL, .n_levels = 2, .level = {SPAN_FINITE, SPAN_INFINITE}, OF_PRESSURE},
     {"fish.pressure.suction_limit", NULL, SWEEP_MODEL, .n_levels = 2, .level = {0.11, 0.25}, OF_PRESSURE},

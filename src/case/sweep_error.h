@@ -34,7 +34,7 @@ struct sweep_error_key {
     int switch_value;
 };
 
-enum { SWEEP_N_ERROR_KEYS = 19 };
+enum { SWEEP_N_ERROR_KEYS = 20 };
 extern const struct sweep_error_key sweep_error_keys[SWEEP_N_ERROR_KEYS];
 
 /* The row of a key by the path in the table of keys, such as "fish.nodes"; NULL: not in the table. */

@@ -162,6 +162,7 @@ struct fish {
     double smoothing;    /* delta of the free vortices, m */
     double taper;        /* distance from the tail over which the smoothing for its own body grows from 0 to delta, m */
     double taper_beside; /* the same for vortices beside the body, m */
+    double leg_length;   /* length s of the legs of its wake far behind the tail, m2; 0: sheets of infinite span */
     double sheet_smoothing; /* of the bound sheet, for other bodies and wakes, m */
 
     double contact_strength; /* contact force that accelerates the body by one length per beat within a beat, N */

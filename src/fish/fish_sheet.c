@@ -75,11 +75,12 @@ static double strip_depth(const struct fish *fish, double u, double *slope) {
 }
 
 // the strip of the sheets of finite span: doc/model.md, section 18
-static void strip_set(struct arena *arena, struct fish *fish) {
+static void strip_set(struct arena *arena, struct fish *fish, double leg_length) {
     NEW(arena, fish->sheet_half, fish->n_sheet);
     NEW(arena, fish->point_half, fish->n_control + fish->n_edges + 1);
     NEW(arena, fish->control_widening, fish->n_control);
     fish->strip_depth = fish->depth[fish->n_edges - 1];
+    fish->leg_length = leg_length * fish->strip_depth * fish->strip_depth / 8;
     for (int k = 0; k < fish->n_edges; k++) fish->depth_varies |= fabs(fish->depth[k] - fish->strip_depth) > 0;
 
     double slope;
@@ -210,7 +211,7 @@ enum status fish_sheet_set(struct arena *arena, struct fish *fish, int f, const 
     } else {
         TRY(line_set(arena, fish, parameters));
     }
-    if (is_strip) strip_set(arena, fish);
+    if (is_strip) strip_set(arena, fish, parameters->wake.leg_length);
     if (fish->force != FORCE_PRESSURE && !is_strip) return STATUS_OK;
     return pressure_set(arena, fish, f, &parameters->fish[f], parameters, is_strip);
 }

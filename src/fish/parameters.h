@@ -65,6 +65,7 @@ struct street_parameters {
 struct wake_parameters {
     double smoothing;           /* fraction of the body length */
     double taper, taper_beside; /* fractions of the body length */
+    double leg_length;          /* factor of the length of the legs of vortex rings */
     struct duration lifetime, decay;
     enum shedding shedding;
     enum removed_circulation removed_circulation;

@@ -43,12 +43,12 @@ void sheet_newest(const struct wake *wake, double interval, double tau, const do
 // ---- points of stretches
 
 // s of a point of the wake at this distance from its tail along the sheet, m2
-static double sheet_leg(double depth, double distance) {
-    if (!(depth > 0)) return 0;
-    const double ratio = distance / (3 * depth), fourth = ratio * ratio * ratio * ratio;
+static double sheet_leg(const struct fish *fish, double distance) {
+    if (!(fish->strip_depth > 0)) return 0;
+    const double ratio = distance / (3 * fish->strip_depth), fourth = ratio * ratio * ratio * ratio;
 
     // exp(-40) is less than the rounding of 1
-    return depth * depth / 8 * (fourth < 40 ? -expm1(-fourth) : 1);
+    return fish->leg_length * (fourth < 40 ? -expm1(-fourth) : 1);
 }
 
 static void points_reserve(struct arena *arena, struct sheet_points *points, int n) {
@@ -125,7 +125,7 @@ static void points_add(const struct sheet *sheet, struct sheet_points *points, c
             points->smoothing[end][i] = is_far ? fish->smoothing : sheet_taper(fish, from_tail, wake->tail_tangent);
         }
         const double *const distance = sheet->distance[end];
-        points->leg[end][i] = sheet_leg(fish->strip_depth, (1 - xi) * distance[newer] + xi * distance[older]);
+        points->leg[end][i] = sheet_leg(fish, (1 - xi) * distance[newer] + xi * distance[older]);
         points->remains[end][i] = newer == older ? wake_part_of_marker(wake, school, t, end, newer)
                                                  : wake_part_of_stretch(wake, school, t, end, older);
     }
@@ -419,7 +419,7 @@ void sheet_place_steady(struct sheet *sheet, struct sheet_points *points, const 
         sources->dx[i] = -shed * points->part[i] * along[0];
         sources->dy[i] = -shed * points->part[i] * along[1];
         sources->half[i] = depth * depth / 32;
-        sources->leg[i] = sheet_leg(depth, distance);
+        sources->leg[i] = sheet_leg(fish, distance);
     }
 }
 
@@ -435,7 +435,7 @@ void sheet_markers(struct sources *sources, const struct sheet *sheet, const str
     memcpy(sources->y + first, wake->y, (size_t)n * sizeof *wake->y);
     for (int i = 0; i < n; i++) {
         sources->half[first + i] = fish->strip_depth * fish->strip_depth / 32;
-        sources->leg[first + i] = sheet_leg(fish->strip_depth, sheet->distance[0][i]);
+        sources->leg[first + i] = sheet_leg(fish, sheet->distance[0][i]);
     }
 
     // the parts of old stretches, then half of every young stretch at both ends

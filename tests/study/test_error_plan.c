@@ -888,6 +888,7 @@ TEST(other_models_bound_the_value) {
     assert_int_equal(key_of(&study, "fish.pressure.suction_limit")->n_levels, 3);
     NEAR_ARRAY(3, key_of(&study, "fish.drag.transition")->value, ((double[]){0, 2e5, 1e8}), 0, 0);
     NEAR_ARRAY(3, key_of(&study, "fish.body.tail_thickness")->value, ((double[]){0.02, 0.04, 0.08}), 0, 1e-12);
+    NEAR_ARRAY(3, key_of(&study, "wake.leg_length")->value, ((double[]){0.5, 1, 2}), 0, 1e-12);
 
     // a member has one other choice, and the defaults that do not follow from it
     for (int m = 0; m < sweep_n_members(study.study); m++) {

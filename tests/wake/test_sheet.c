@@ -8,6 +8,7 @@
 
 #define SHEET "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\n"
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+#define LONG_LEGS "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1, leg_length: 1.5}\n"
 #define SMALL TIME "defaults: {fish: {nodes: 7}}\n"
 
 TEST(the_panel_integrates_the_inverse_square_root) {
@@ -104,10 +105,10 @@ TEST(every_view_has_the_same_circulation) {
     }
 }
 
-// model.md, section 18: s(d) = w^2/8 (1 - exp(-(d/(3 w))^4)) at the distance d from the tail along the sheet
+// model.md, section 18: s(d) = c w^2/8 (1 - exp(-(d/(3 w))^4)) at the distance d from the tail along the sheet
 TEST(legs_grow_along_the_sheet_and_old_stretches_have_fewer_points) {
     enum { N = 9 };
-    struct setup setup = setup_of(SMALL SHEET SPAN("finite"));
+    struct setup setup = setup_of(SMALL LONG_LEGS SPAN("finite"));
     const struct fish *const fish = setup.school->fish;
     struct wake *const wake = &setup.state->wake[0];
     const double w = fish->strip_depth, spacing = 0.7 * w;
@@ -121,7 +122,7 @@ TEST(legs_grow_along_the_sheet_and_old_stretches_have_fewer_points) {
     for (int i = 0; i < sheet.graded.n_released; i++) {
         const int age = N - 1 - sheet.graded.older[i];
         const double distance = (age - 1 + sheet.graded.xi[i]) * spacing;
-        NEAR(sheet.graded.leg[0][i], w * w / 8 * (1 - exp(-pow(distance / (3 * w), 4))), 1e-15, 1e-12);
+        NEAR(sheet.graded.leg[0][i], 1.5 * w * w / 8 * (1 - exp(-pow(distance / (3 * w), 4))), 1e-15, 1e-12);
         n_points[age]++;
     }
     for (int age = 1; age < N; age++) assert_int_equal(n_points[age], age == 1 ? 4 : age <= 4 ? 2 : 1);
