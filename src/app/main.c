@@ -32,7 +32,7 @@ static const struct command commands[] = {
      main_run},
     {"resume",
      "RUN.nc",
-     "continue a run that was stopped or killed, or extend a complete one; also from a named checkpoint",
+     "continue a run that was stopped or killed, or extend a complete one; takes a checkpoint too",
      {OPTION_END, OPTION_STRICT, OPTION_THREADS, OPTION_MAX_WALL, OPTION_CHECKPOINT_AT, 'q', 'v', 'h'},
      NULL,
      main_resume},
@@ -52,7 +52,7 @@ static const struct command commands[] = {
      main_study},
     {"error",
      "CASE",
-     "estimate the errors of quantities: vary each numerical key of a case and compare the levels",
+     "give results an error bar: vary each numerical key of a case and see what changes",
      {'o', 'j', OPTION_OF, OPTION_WITHIN, OPTION_AGAINST, OPTION_SWEEP, OPTION_NO_CONFIRM, OPTION_MODELS, OPTION_PLAN,
       OPTION_LIMIT, OPTION_FORCE, OPTION_STRICT, OPTION_SET, OPTION_THREADS, OPTION_MAX_WALL, 'q', 'h'},
      "folder of the members (default: the name of the case file with -error)",
@@ -70,12 +70,17 @@ static const struct command commands[] = {
       OPTION_SET, OPTION_THREADS, 'q', 'h'},
      "NetCDF file in the format of study.nc (default: none)",
      main_compare},
-    {"check", "CASE", "check a case and list all errors", {OPTION_SET, OPTION_THREADS, 'q', 'h'}, NULL, main_check},
+    {"check",
+     "CASE",
+     "check a case, list all errors, and estimate time and memory of the run",
+     {OPTION_SET, OPTION_THREADS, 'q', 'h'},
+     NULL,
+     main_check},
     {"show", "CASE", "print a case with the values of all keys", {OPTION_SET, OPTION_THREADS, 'h'}, NULL, main_show},
     {"new", "CASE", "write a commented case to start from; never overwrites a file", {'q', 'h'}, NULL, main_new},
     {"keys",
      "[WORD]",
-     "list all keys of cases, or all variables of result files, or those with a word in name or meaning",
+     "list the keys of cases, or the variables of results: all, or those whose description has a word",
      {OPTION_JSON, OPTION_OUTPUT, 'h'},
      NULL,
      main_keys},
@@ -87,7 +92,7 @@ static const struct command commands[] = {
      main_field},
     {"info",
      "FILE",
-     "summarise the file of a run, a study or a field, or a checkpoint",
+     "summarise a file: of a run, a study or a field, or a checkpoint",
      {OPTION_CASE, OPTION_JSON, 'v', 'h'},
      NULL,
      main_info},
@@ -115,9 +120,9 @@ enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 static const char summary[] = "schools of flexible swimmers";
 static const char exit_codes[] =
-    "0 success, 1 integration failed, 2 wrong usage or wrong case, 3 an expectation is not met\n"
-    "or bodies met with contact.action: stop, 4 file or memory error, 75 stopped by a signal or --max-wall:\n"
-    "continue a run with shoal resume; start a search for a steady state again.";
+    "0 success, 1 the integration failed, 2 wrong usage or a wrong case, 3 an expectation is not met\n"
+    "or bodies met with contact.action: stop, 4 file or memory error, 75 stopped by a signal or by\n"
+    "--max-wall: continue a run with shoal resume; a search for a steady state starts again.";
 
 static void print_help(FILE *stream) {
     fprintf(stream, "shoal: %s\n\nUsage: shoal COMMAND [OPTIONS] [FILE]\n\n", summary);
