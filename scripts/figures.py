@@ -100,6 +100,8 @@ CHAPTERS = [
          ["shoal run cases/fish_pressure.yaml -q -o fish_pressure.nc", "plot.py pressure fish_pressure.nc pressure.png"]),
         ("school", "Polarisation, distances and contacts; a panel without content is left out.",
          [CROWD, "plot.py school crowd.nc school.png"]),
+        ("modes", "The Floquet multipliers of a steady state, with their errors, and the fish that move in the mode of the largest.",
+         ["shoal steady cases/tandem_plates.yaml -q -o tandem.nc", "plot.py modes tandem.nc modes.png"]),
     ]),
     ("A field", "`shoal field` computes the flow on a grid.", [
         ("field", "Vorticity.", [PAIR, "shoal field pair.nc --grid 240,120 -q -o field.nc", "plot.py field field.nc field.png"]),
@@ -192,7 +194,7 @@ def script_of(command):
     words = command.split()
     if words[0] != "plot.py":
         return ast.dump(ast.parse(read(words[0])))
-    own = {"study": ["_plot_study.py"], "field": ["_plot_field.py"], "school": ["_plot_school.py", "plot.py"]}.get(words[1], ["plot.py", "_draw.py"])
+    own = {"study": ["_plot_study.py"], "field": ["_plot_field.py"], "school": ["_plot_school.py", "plot.py"], "modes": ["_plot_modes.py"]}.get(words[1], ["plot.py", "_draw.py"])
     return "".join(ast.dump(ast.parse(read("scripts", "shoal", name))) for name in [*own, "_plot_style.py", "_files.py"])
 
 

@@ -9,6 +9,7 @@
     plot.py forces RUN.nc [PICTURE]    forces and powers by name over time, one column per fish
     plot.py pressure RUN.nc [PICTURE]  the jump of the pressure along the bodies over the last beat (force: pressure)
     plot.py school RUN.nc [PICTURE]    polarisation, distances to the nearest neighbour and contacts over time
+    plot.py modes  STEADY.nc [PICTURE] the Floquet multipliers of a steady state, and the fish that move in the largest mode
     plot.py field  FIELD.nc [PICTURE]  vorticity (--speed: speed; --streamlines), from a file of `shoal field`
 
 For a journal --style paper adds letters to the panels and makes the figure 170 mm wide, or --width 85.
@@ -47,6 +48,7 @@ PICTURES = {
     "forces": "forces and powers by name over time",
     "pressure": "the jump of the pressure along the bodies over one beat",
     "school": "polarisation, nearest neighbours and contacts over time",
+    "modes": "the multipliers of a steady state and the largest mode",
     "field": "the flow on a grid, from a file of shoal field",
     "study": "a study or a comparison of methods",
 }

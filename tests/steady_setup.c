@@ -14,8 +14,7 @@ void steady_setup_open(struct steady_setup *setup, const char *text) {
 }
 
 void steady_setup_multipliers(struct steady_setup *setup) {
-    school_ok(steady_multipliers_find(&setup->problem, setup->real, setup->imaginary, setup->way,
-                                      &setup->n_multiplier_beats));
+    school_ok(steady_multipliers_find(test_arena(), &setup->problem, &setup->multipliers));
 }
 
 void steady_setup_find(struct steady_setup *setup, const char *text) {

@@ -13,9 +13,7 @@ struct steady_setup {
     struct case_values values;
     struct simulation *simulation;
     struct steady_problem problem;
-    int n_multiplier_beats;
-    double real[4 * STEADY_QUANTITIES], imaginary[4 * STEADY_QUANTITIES]; /* multipliers, of at most four fish */
-    double way[4 * STEADY_QUANTITIES];                                    /* and what is away from the fixed point */
+    struct steady_multipliers multipliers;
 };
 
 /* Pose the problem of a case. Fails the test with the message where there is one. */

@@ -185,11 +185,14 @@ class Steady:
     @property
     def multipliers(self) -> np.ndarray:
         """Factors by which small disturbances change in one beat, complex, the largest first."""
-        return self._values["multiplier"] @ [1, 1j]
+        return self._values["multiplier"].reshape(-1, 2) @ [1, 1j]
 
     @property
     def is_stable(self) -> bool:
-        """Whether the slowest disturbance decays: the growth rate, s-1, is negative."""
+        """Whether every small disturbance decays, also with the error of the largest multiplier; of bodies without a beat
+        whether the growth rate, s-1, is negative."""
+        if len(self.multipliers) > 0:
+            return bool(abs(self.multipliers[0]) + self._values["multiplier_error"][0] < 1)
         return bool(self._values["growth"] < 0)
 
     def to_xarray(self):
@@ -197,11 +200,12 @@ class Steady:
         from ._results import _xarray
 
         xarray, n = _xarray(), len(self.names)
-        data = {"multiplier": ("multiplier_number", self.multipliers)}
+        data = {"multiplier": ("multiplier_number", self.multipliers),
+                "multiplier_error": ("multiplier_number", self._values["multiplier_error"])}
         for name, value in self._values.items():
-            if name != "multiplier" and np.ndim(value) == 0:
+            if np.ndim(value) == 0:
                 data[name] = ((), value)
-            elif name != "multiplier" and np.shape(value)[0] == n:
+            elif name not in (*data, "mode", "exponent") and np.shape(value)[0] == n:
                 data[name] = (("fish", *(f"{name}_{i}" for i in range(1, np.ndim(value)))), value)
         return xarray.Dataset(data, coords={"fish": self.names}, attrs={"path": self.path})
 

@@ -17,6 +17,7 @@ import os
 import numpy as np
 
 from . import _plot_field as plot_field_module
+from . import _plot_modes as plot_modes_module
 from . import _plot_school as plot_school_module
 from . import _plot_study as plot_study_module
 from ._files import Results, kind_of
@@ -30,7 +31,7 @@ from matplotlib import pyplot
 from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
 
-__all__ = ["swim", "gait", "time", "forces", "pressure", "school", "field", "study"]
+__all__ = ["swim", "gait", "time", "forces", "pressure", "school", "modes", "field", "study"]
 
 
 
@@ -565,6 +566,13 @@ def plot_field(path, options):
     return figure
 
 
+def plot_modes(results, options):
+    """The multipliers of a steady state and the largest mode."""
+    figure = pyplot.figure(figsize=(WIDTH, 2.9), layout="constrained")
+    plot_modes_module.draw(results, figure)
+    return figure
+
+
 def plot_school(results, options):
     """Polarisation, nearest neighbours and contacts of a school over time."""
     if results.n_fish < 2:
@@ -649,6 +657,11 @@ def pressure(source, fish=None, shapes: int = 12):
 def school(source):
     """Polarisation, distances to the nearest neighbour, m, and contacts over time."""
     return _axes("school", source)
+
+
+def modes(source):
+    """The Floquet multipliers of a steady state, and the fish that move in the mode of the largest one."""
+    return _axes("modes", source)
 
 
 def field(source, speed: bool = False, streamlines: bool = False):

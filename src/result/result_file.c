@@ -25,6 +25,7 @@ void result_values_lengths(const struct school *school, int n_vortices, size_t l
     length[SENSOR] = 0;
     length[WALL] = (size_t)school->walls.n;
     length[MULTIPLIER] = STEADY_QUANTITIES * (size_t)school->n_fish;
+    length[SLOW] = STEADY_QUANTITIES;
 
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
@@ -61,8 +62,9 @@ void result_values_fill(const struct result_variable *variable, const size_t *le
         for (size_t k = 0; k < n; k++) ((double *)buffer)[k] = NAN;
     }
 
-    // the slots of the school or of each fish
-    const size_t n_fish = result_table_has(variable, FISH) ? length[FISH] : 1;
+    // the slots of the school or of each fish; the multipliers are those of the school
+    const bool is_of_fish = result_table_has(variable, FISH) && variable->dimension[0] != MULTIPLIER;
+    const size_t n_fish = is_of_fish ? length[FISH] : 1;
     const size_t n_owners = variable->owner == OF_AXIS ? length[XY] : n_fish;
     for (size_t f = 0; f < n_owners; f++) {
         void *const slots = (char *)buffer + f * (n / n_owners) * size;
@@ -326,7 +328,7 @@ enum status result_file_create(struct arena *arena, struct result_file **result,
         struct netcdf_writer *const writer = &new->writer;
         int dimension_number[RESULT_N_DIMENSIONS] = {0};
         for (enum result_dimension d = TIME; d < RESULT_N_DIMENSIONS; d++) {
-            if ((d == MULTIPLIER && !new->is_steady) || (d != TIME && new->length[d] == 0)) continue;
+            if (((d == MULTIPLIER || d == SLOW) && !new->is_steady) || (d != TIME && new->length[d] == 0)) continue;
             dimension_number[d] =
                 netcdf_define_dimension(writer, result_table_dimension(d), d == TIME ? 0 : new->length[d]);
         }

@@ -249,11 +249,80 @@ static enum status read_pair(const struct netcdf_reader *reader, const char *nam
     return STATUS_OK;
 }
 
+/* The most telling parts of the mode of multiplier i: "b ahead 1.00, b speed 0.86". */
+static enum status print_mode(const struct netcdf_reader *reader, size_t i, size_t n_fish, FILE *stream) {
+    static const char *const slow[STEADY_QUANTITIES] = {"speed", "slip", "turn", "heading", "ahead", "aside"};
+    const double least = 0.2;
+    enum { MOST_PARTS = 4 };
+    const size_t n = n_fish * STEADY_QUANTITIES;
+    double *mode;
+    NEW(reader->arena, mode, 2 * n);
+    const struct netcdf_slice slice[] = {
+        {"multiplier", i, 1}, {"fish", 0, n_fish}, {"slow", 0, STEADY_QUANTITIES}, {"xy", 0, 2}, {NULL}};
+    TRY(netcdf_read_doubles(reader, "steady_mode", slice, mode));
+
+    for (int part = 0; part < MOST_PARTS; part++) {
+        size_t largest = 0;
+        double most = 0;
+        for (size_t k = 0; k < n; k++) {
+            const double size = hypot(mode[2 * k], mode[2 * k + 1]);
+            if (size > most) largest = k, most = size;
+        }
+        if (most < least) break;
+        mode[2 * largest] = 0, mode[2 * largest + 1] = 0;
+        char *name = "";
+        if (n_fish > 1) TRY(result_reader_name(reader, largest / (size_t)STEADY_QUANTITIES, &name));
+        fprintf(stream, "%s%s%s%s %.2f", part > 0 ? ", " : "", name, n_fish > 1 ? " " : "",
+                slow[largest % (size_t)STEADY_QUANTITIES], most);
+    }
+    return STATUS_OK;
+}
+
+/* Print the multipliers, of a pair the first only, and whether the state is stable. */
+static enum status print_multipliers(const struct netcdf_reader *reader, double n_beats, size_t n, FILE *stream) {
+    const struct info info = {.reader = reader};
+    double pair[2], error, amplification, first[2] = {NAN, NAN};
+    size_t n_fish;
+    bool exists;
+    TRY(netcdf_read_length(reader, "fish", 1, CASE_MAX_FISH, &n_fish));
+    TRY(info_read(&info, NO_ROW, NO_FISH, "steady_amplification", &amplification));
+    fprintf(stream, "  multipliers in %.0f more beats, and the largest parts of their modes:\n", n_beats);
+
+    for (size_t i = 0;; i++) {
+        TRY(read_pair(reader, "steady_multiplier", n, i, pair, &exists));
+        if (!exists) break;
+        const struct netcdf_slice slice[] = {{"multiplier", i, 1}, {NULL}};
+        TRY(netcdf_read_doubles(reader, "steady_multiplier_error", slice, &error));
+        const double size = hypot(pair[0], pair[1]);
+        if (i == 0) first[0] = size, first[1] = error;
+        if (!(size > 0) || pair[1] < 0) continue;
+        fprintf(stream, "    %.4f +- %.4f", size, error);
+        if (pair[1] > 0) fprintf(stream, ", period %.1f beats", 2 * M_PI / atan2(pair[1], pair[0]));
+        if (pair[1] == 0 && pair[0] < 0) fprintf(stream, ", period 2 beats");
+        fprintf(stream, ": ");
+        TRY(print_mode(reader, i, n_fish, stream));
+        fprintf(stream, "\n");
+    }
+
+    if (first[0] + first[1] < 1) {
+        fprintf(stream, "  stable");
+    } else if (first[0] - first[1] > 1) {
+        fprintf(stream, "  unstable");
+    } else {
+        fprintf(stream, "  undecided: 1 is within the error of the largest multiplier");
+    }
+    if (!(first[0] - first[1] > 1) && amplification > 1) {
+        fprintf(stream, "; a disturbance may grow by the factor %.2g in %d beats", amplification, 32);
+    }
+    fprintf(stream, "\n");
+    return STATUS_OK;
+}
+
 /* Print effort and stability: of bodies without a beat the growth rates of modes, else the multipliers. */
 static enum status print_stability(const struct netcdf_reader *reader, FILE *stream) {
     const struct info info = {.reader = reader};
     const double still = 1e-5;  // growth rates below this, s-1, are rounding
-    double beats, multiplier_beats, residual, error, stiffness, pair[2], first[2] = {NAN, NAN};
+    double beats, multiplier_beats, residual, error, stiffness, pair[2], first[2];
     bool exists;
     size_t n;
     TRY(info_read(&info, NO_ROW, NO_FISH, "steady_beats", &beats));
@@ -290,19 +359,8 @@ static enum status print_stability(const struct netcdf_reader *reader, FILE *str
         fprintf(stream, "\n  steady state after %.0f beats: change from beat to beat %.1e", beats, residual);
         if (!isnan(error)) fprintf(stream, ", about %.1e from the fixed point", error);
         fprintf(stream, "\n");
-        if (multiplier_beats > 0) fprintf(stream, "  multipliers in %.0f more beats:", multiplier_beats);
+        if (multiplier_beats > 0) return print_multipliers(reader, multiplier_beats, n, stream);
     }
-
-    // of a pair of multipliers only the first is printed
-    double largest = NAN;
-    TRY(read_pair(reader, "steady_multiplier", n, 0, pair, &exists));
-    for (size_t i = 0; exists;) {
-        if (i == 0) largest = hypot(pair[0], pair[1]);
-        if (pair[1] >= 0) fprintf(stream, "%s %.4f", i > 0 ? "," : "", pair[0]);
-        if (pair[1] > 0) fprintf(stream, " +- %.4f i", pair[1]);
-        TRY(read_pair(reader, "steady_multiplier", n, ++i, pair, &exists));
-    }
-    if (!isnan(largest)) fprintf(stream, ": %s\n", largest < 1 ? "stable" : "unstable");
     return STATUS_OK;
 }
 
@@ -415,7 +473,15 @@ enum status result_json_steady(const struct netcdf_reader *reader, FILE *stream)
 
         // omit unused multipliers
         const bool of_multipliers = variable->dimension[0] == MULTIPLIER;
-        while (of_multipliers && slice[0].n > 0 && isnan(values[2 * slice[0].n - 2])) slice[0].n--;
+        const size_t stride = size / slice[0].n;
+        while (of_multipliers && slice[0].n > 0) {
+            size_t n_numbers = 0;
+            for (size_t k = 0; k < stride; k++) {
+                if (!isnan(values[stride * (slice[0].n - 1) + k])) n_numbers++;
+            }
+            if (n_numbers > 0) break;
+            slice[0].n--;
+        }
         const double *next = values;
         fprintf(stream, ",\n  \"%s\": ", variable->name);
         print_json_list(slice, &next, stream);

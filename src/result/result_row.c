@@ -137,5 +137,9 @@ void result_row_steady(const struct result_row *row, int f, enum result_part par
     const struct steady_values *const steady = row->steady;
     if (!steady) return;
     if (part == PART_MULTIPLIER) interleave(steady->n_multipliers, steady->real, steady->imaginary, slots);
+    if (part == PART_MULTIPLIER_ERROR) copy_values(steady->n_multipliers, steady->multiplier_error, slots);
+    if (part == PART_MODE) {
+        copy_values(steady->n_multipliers * row->school->n_fish * STEADY_QUANTITIES * 2, steady->mode, slots);
+    }
     if (part == PART_EXPONENT) interleave(steady->n_exponents, steady->rate, steady->omega, slots);
 }

@@ -39,6 +39,10 @@ struct steady_values {
     double error;             /* estimate of how far that is from the fixed point; NaN without multipliers */
     int n_multipliers;        /* 0: none were asked for, or there is no slow quantity */
     double *real, *imaginary; /* by falling absolute value                         (n_multipliers) */
+    double *multiplier_error; /* of the absolute value                             (n_multipliers) */
+    double *mode; /* real and imaginary parts of the slow quantities of each multiplier, over the largest; NaN: not slow
+                     (n_multipliers, n_fish, STEADY_QUANTITIES, 2) */
+    double amplification; /* largest growth of the disturbance of one slow quantity within 32 beats; NaN: unknown */
     int n_exponents;      /* of small disturbances, of a pair one: of the multipliers, or without a beat of the modes
                                  of the bodies */
     double *rate, *omega; /* growth rate, s-1, and angular frequency, rad s-1, by falling rate (n_exponents) */
@@ -88,6 +92,8 @@ enum result_part {
     PART_DIFFERENTIAL,
     PART_ALGEBRAIC,
     PART_MULTIPLIER,
+    PART_MULTIPLIER_ERROR,
+    PART_MODE,
     PART_EXPONENT
 };
 

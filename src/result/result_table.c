@@ -106,6 +106,15 @@ const struct result_variable result_table[] = {
     {"steady_multiplier",     {MULTIPLIER, XY},       RESULT_REAL,    "1",
      .of_steady = true, .owner = OF_STEADY, OF_STEADY_STATE(MULTIPLIER),
      .long_name = "Floquet multipliers of the slow quantities, real and imaginary parts"},
+    {"steady_multiplier_error", {MULTIPLIER},         RESULT_REAL,    "1",
+     .of_steady = true, .owner = OF_STEADY, OF_STEADY_STATE(MULTIPLIER_ERROR),
+     .long_name = "error of the absolute values of the multipliers: noise of the wake, size of the disturbances"},
+    {"steady_mode",           {MULTIPLIER, FISH, SLOW, XY}, RESULT_REAL, "1",
+     .of_steady = true, .owner = OF_STEADY, OF_STEADY_STATE(MODE),
+     .long_name = "disturbance that grows by a multiplier: change of speed, slip, turn, heading, place ahead and place "
+                  "aside in units of length and beat, over the largest; real and imaginary parts"},
+    {"steady_amplification",  {NONE},                 RESULT_REAL,    "1",      IN_STEADY(amplification),
+     .long_name = "largest factor by which a disturbance of one slow quantity grows within 32 beats"},
     {"steady_growth",         {NONE},                 RESULT_REAL,    "s-1",    IN_STEADY(growth),
      .long_name = "growth rate of the least stable disturbance; unstable above 0"},
     {"steady_growth_frequency", {NONE},               RESULT_REAL,    "Hz",     IN_STEADY(growth_frequency),
@@ -436,9 +445,9 @@ _Static_assert(sizeof result_table / sizeof *result_table <= RESULT_TABLE_MAX, "
 // ---- look-ups ----
 
 const char *result_table_dimension(enum result_dimension dimension) {
-    static const char *const name[] = {"",      "time",       "fish",    "node",   "edge",
-                                       "joint", "sheet",      "control", "vortex", "xy",
-                                       "name",  "multiplier", "wall",    "sensor", "order_of_step"};
+    static const char *const name[] = {"",      "time",    "fish",   "node",         "edge", "joint",
+                                       "sheet", "control", "vortex", "xy",           "name", "multiplier",
+                                       "slow",  "wall",    "sensor", "order_of_step"};
     return name[dimension];
 }
 

@@ -30,6 +30,7 @@ enum result_dimension {
     XY,
     NAME,
     MULTIPLIER,
+    SLOW,
     WALL,
     SENSOR,
     ORDER,

@@ -1,10 +1,12 @@
-/* newton.c: KINSOL with a dense matrix, and least squares by LAPACK. */
+/* newton.c: KINSOL with a dense matrix, and maps with memory by LAPACK. */
 #include "solver/newton.h"
 
+#include <complex.h>
 #include <lapacke.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "solver/sundials.h"
@@ -79,62 +81,84 @@ enum status newton_solve(struct arena *arena, const struct newton *problem, doub
                        cause);
 }
 
-// ---- least squares and eigenvalues of LAPACK
+// ---- a linear map with memory
 
-/* Directions in which the columns are below this fraction of the largest column count as decayed: what is left there is
- * the error of the integration. */
-static const double least_singular = 0.03;
-
-/* Eigenvalues of decayed directions are below this limit. */
+/* Eigenvalues below this limit are rounding errors of 0. */
 static const double dead_multiplier = 1e-10;
 
-enum status newton_multipliers(struct arena *arena, int n, int n_columns, const double *before, const double *after,
-                               const double *change, double *real, double *imaginary, double *way) {
+struct eigenvalue {
+    double real, imaginary;
+    lapack_int column; /* of the eigenvector */
+};
+
+// by falling absolute value, in a pair the positive imaginary part first; both values of a pair have the same modulus
+// up to rounding
+static int compare_eigenvalues(const void *a, const void *b) {
+    const struct eigenvalue *const one = a, *const other = b;
+    const double size = hypot(one->real, one->imaginary), size_of_other = hypot(other->real, other->imaginary);
+    if (fabs(size - size_of_other) > 1e-12 * (size + size_of_other)) return size > size_of_other ? -1 : 1;
+    if (one->imaginary != other->imaginary) return one->imaginary > other->imaginary ? -1 : 1;
+    return one->column - other->column;
+}
+
+enum status newton_multipliers(struct arena *arena, int n, int n_memory, const double *response, double *real,
+                               double *imaginary, double *mode) {
     ARENA(scratch, arena, "multipliers");
-    static const char not_apart[] = "the multipliers cannot be told apart";
-    const int m = n_columns;
-    double *matrix, *images;
-    lapack_int *pivot, rank = 0;
-    NEW(scratch, matrix, (size_t)n * (size_t)m);
-    NEW(scratch, images, (size_t)n * (size_t)m);
-    NEW(scratch, pivot, n);
+    const int size = n * n_memory;
+    double *companion, *re, *im, *vectors = NULL;
+    struct eigenvalue *all;
+    NEW(scratch, companion, (size_t)size * (size_t)size);
+    NEW(scratch, re, size);
+    NEW(scratch, im, size);
+    NEW(scratch, all, size);
+    if (mode) NEW(scratch, vectors, (size_t)size * (size_t)size);
 
-    // before^T X = after^T has as its solution X the transposed map, whose eigenvalues are the same. real serves as
-    // scratch for the singular values; the rows of images below n receive the residuals.
+    // the companion matrix maps (x_k, x_k-1, ...) to (x_k+1, x_k, ...)
+    for (int j = 0; j < size; j++) {
+        for (int i = 0; i < n; i++) companion[i + size * j] = response[i + n * j];
+        if (j + n < size) companion[j + n + size * j] = 1;
+    }
+    if (LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', mode ? 'V' : 'N', size, companion, size, re, im, NULL, 1, vectors, size)) {
+        return status_fail(STATUS_SOLVER, "the multipliers have not converged: a response is not finite");
+    }
+    for (int i = 0; i < size; i++) {
+        // the second vector of a pair is the conjugate of the first
+        all[i] = (struct eigenvalue){re[i], im[i], im[i] < 0 ? i - 1 : i};
+        if (hypot(re[i], im[i]) < dead_multiplier) all[i] = (struct eigenvalue){0, 0, i};
+    }
+    qsort(all, (size_t)size, sizeof *all, compare_eigenvalues);
+
     for (int i = 0; i < n; i++) {
-        for (int j = 0; j < m; j++) {
-            matrix[j + m * i] = before[i + n * j];
-            images[j + m * i] = after[i + n * j];
+        real[i] = all[i].real;
+        imaginary[i] = all[i].imaginary;
+        if (!mode) continue;
+
+        // the components of x, over the largest
+        const double *const of_real = vectors + (size_t)size * (size_t)all[i].column;
+        const double *const of_imaginary = of_real + size;
+        const double sign = all[i].imaginary > 0 ? 1 : all[i].imaginary < 0 ? -1 : 0;
+        double complex largest = 0;
+        for (int k = 0; k < n; k++) {
+            const double complex one = of_real[k] + (sign != 0 ? sign * I * of_imaginary[k] : 0);
+            if (cabs(one) > cabs(largest)) largest = one;
         }
-    }
-    const int failed = LAPACKE_dgelsd(LAPACK_COL_MAJOR, m, n, n, matrix, m, images, m, real, least_singular, &rank);
-    if (failed != 0 || rank < 1) return status_fail(STATUS_SOLVER, not_apart);
-
-    // (I - A) way = change
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n; j++) matrix[i + n * j] = (i == j) - images[j + m * i];
-    }
-    memcpy(way, change, (size_t)n * sizeof *way);
-    if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, 1, matrix, n, pivot, way, n) != 0) memset(way, 0, (size_t)n * sizeof *way);
-
-    if (LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', n, images, m, real, imaginary, NULL, 1, NULL, 1) != 0) {
-        return status_fail(STATUS_SOLVER, not_apart);
-    }
-
-    // sort by absolute value, in which the two members of a complex pair agree up to rounding
-    for (int i = 0; i < n; i++) {
-        double re = real[i], im = imaginary[i];
-        if (hypot(re, im) < dead_multiplier) re = im = 0;
-        int place = i;
-        for (; place > 0; place--) {
-            const double size = hypot(re, im), before_it = hypot(real[place - 1], imaginary[place - 1]);
-            const bool differ = fabs(size - before_it) > 1e-12 * (size + before_it);
-            if (!(differ ? size > before_it : im > imaginary[place - 1])) break;
-            real[place] = real[place - 1];
-            imaginary[place] = imaginary[place - 1];
+        for (int k = 0; k < n; k++) {
+            const double complex one = of_real[k] + (sign != 0 ? sign * I * of_imaginary[k] : 0);
+            mode[2 * (k + n * i)] = largest != 0 ? creal(one / largest) : 0;
+            mode[2 * (k + n * i) + 1] = largest != 0 ? cimag(one / largest) : 0;
         }
-        real[place] = re;
-        imaginary[place] = im;
     }
     return STATUS_OK;
+}
+
+void newton_way(struct arena *arena, int n, int n_memory, const double *response, const double *change, double *way) {
+    ARENA(scratch, arena, "the way to a fixed point");
+    double *matrix;
+    lapack_int *pivot;
+    NEW(scratch, matrix, (size_t)n * (size_t)n);
+    NEW(scratch, pivot, n);
+    for (int i = 0; i < n; i++) matrix[i + n * i] = 1;
+    for (int i = 0; i < n * n * n_memory; i++) matrix[i % (n * n)] -= response[i];
+    memcpy(way, change, (size_t)n * sizeof *way);
+    if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, 1, matrix, n, pivot, way, n) != 0) memset(way, 0, (size_t)n * sizeof *way);
 }

@@ -1,6 +1,5 @@
-/* newton.h: Newton's method of KINSOL for a few expensive equations, such as those of a steady state, and the fixed
- * point and the eigenvalues of a linear map. All systems here are small and dense. Tested by
- * tests/solver/test_newton.c. */
+/* newton.h: small dense systems: Newton's method of KINSOL for a few expensive equations, such as the equations of a
+ * steady state; fixed point and multipliers of a linear map with memory. Tested by tests/solver/test_newton.c. */
 #ifndef NEWTON_H
 #define NEWTON_H
 
@@ -26,17 +25,16 @@ struct newton {
  * for scratch. */
 enum status newton_solve(struct arena *arena, const struct newton *problem, double *u);
 
-/* Find the eigenvalues of the linear map A of n dimensions that takes the columns of before to the columns of after as
- * well as possible in the sense of least squares. Both are (n, n_columns), column after column, with n_columns >= n.
- *
- * The eigenvalues are sorted by falling absolute value, and the one with positive imaginary part comes first in a
- * complex pair. They are 0 in directions in which the columns of before are below 3 % of the largest one.
- *
- * way (n) is the vector from the point at which the map changes x by change to the fixed point of x -> A x + b, that is
- * (I - A) way = change. It is 0 if 1 is an eigenvalue, because there is no fixed point then.
- *
- * Fails with STATUS_SOLVER if all columns are 0. arena: for scratch. */
-enum status newton_multipliers(struct arena *arena, int n, int n_columns, const double *before, const double *after,
-                               const double *change, double *real, double *imaginary, double *way);
+/* The n largest multipliers of a linear map with memory, x_k+1 = sum over m < n_memory of response_m x_k-m, in which
+ * response_m has the elements response[i + n j + n n m]: solutions x_k = lambda^k x_0. Sorted by falling absolute
+ * value, in a complex pair positive imaginary part first. mode (n, n, 2), or NULL: real and imaginary part of element k
+ * of vector x_0 of multiplier i are at 2 (k + n i), over the largest element. Fails with STATUS_SOLVER if a response is
+ * not finite. arena: for scratch. */
+enum status newton_multipliers(struct arena *arena, int n, int n_memory, const double *response, double *real,
+                               double *imaginary, double *mode);
+
+/* The way to the fixed point of such a map from a point that the map changes by change (n): (I - sum of response_m) way
+ * = change; 0 if 1 is a multiplier, when there is no fixed point. arena: for scratch. */
+void newton_way(struct arena *arena, int n, int n_memory, const double *response, const double *change, double *way);
 
 #endif

@@ -34,7 +34,7 @@ struct run {
     struct arena *arena;
     struct simulation *simulation;
     struct steady_problem problem;
-    double *way; /* correction towards the fixed point, from the multipliers       (problem.n_unknowns) */
+    struct steady_multipliers multipliers;
     struct steady_values found;
     struct record record;
     char warnings[4 * WARNING_BYTES]; /* lines about the state that was found */
@@ -60,18 +60,29 @@ static double speed_distance(const struct run *run) {
     const struct steady_problem *const problem = &run->problem;
     double most = 0;
     for (int i = 0; i < problem->n_unknowns && !problem->map.is_formation; i++) {
-        if (problem->unknown[i].quantity == STEADY_SPEED) most = larger(most, fabs(run->way[i]));
+        if (problem->unknown[i].quantity == STEADY_SPEED) most = larger(most, fabs(run->multipliers.way[i]));
     }
     return most;
 }
 
 static enum status find_multipliers(struct run *run) {
     struct steady_values *const found = &run->found;
-    int n_beats;
+    const struct steady_multipliers *const now = &run->multipliers;
+    const int n = run->problem.n_unknowns, n_slots = run->simulation->school->n_fish * STEADY_QUANTITIES;
     found->residual = steady_map_residual(&run->problem.map);
-    TRY(steady_multipliers_find(&run->problem, found->real, found->imaginary, run->way, &n_beats));
-    found->n_multipliers = run->problem.n_unknowns;
-    found->n_multiplier_beats += n_beats;
+    TRY(steady_multipliers_find(run->arena, &run->problem, &run->multipliers));
+    found->n_multipliers = n;
+    found->n_multiplier_beats += now->n_beats;
+    found->real = now->real;
+    found->imaginary = now->imaginary;
+    found->multiplier_error = now->error;
+    found->amplification = now->amplification;
+    for (int i = 0; i < 2 * n * n_slots; i++) found->mode[i] = NAN;
+    for (int i = 0; i < 2 * n * n; i++) {
+        const struct steady_unknown *const unknown = &run->problem.unknown[i / 2 % n];
+        const int slot = unknown->fish * STEADY_QUANTITIES + (int)unknown->quantity;
+        found->mode[2 * (i / (2 * n) * n_slots + slot) + i % 2] = now->mode[i];
+    }
 
     // distance between 1 and the nearest multiplier
     double nearest = INFINITY;
@@ -164,11 +175,11 @@ static void warn_of_state(struct run *run) {
     }
 
     const double largest = found->n_multipliers > 0 ? hypot(found->real[0], found->imaginary[0]) : 0;
+    const double error = found->n_multipliers > 0 ? found->multiplier_error[0] : 0;
     if (largest > 1) {
-        warn(run,
-             "the steady state is unstable: a disturbance grows by the factor %.4g a beat (limit 1), so that a run "
-             "leaves it; %s",
-             largest,
+        warn(run, "the steady state %s unstable: a disturbance grows by the factor %.4g +- %.2g a beat (limit 1)%s; %s",
+             largest - error > 1 ? "is" : "may be", largest, error,
+             largest - error > 1 ? ", so that a run leaves it" : "",
              school->n_fish > 1 ? "search from another place, or hold the places by control"
                                 : "a deeper body, cross-flow drag (drag.normal) or control.law: course stabilises it");
     }
@@ -207,7 +218,7 @@ static enum status steady_find(struct run *run, bool is_static) {
     for (int i = 0; i < CORRECTIONS && has_multipliers; i++) {
         const double now = speed_distance(run);
         if (now <= far_away * run->values->steady.tolerance) break;
-        TRY(steady_search_correct(&run->problem, now <= half * last ? run->way : NULL));
+        TRY(steady_search_correct(&run->problem, now <= half * last ? run->multipliers.way : NULL));
         last = now;
         TRY(find_multipliers(run));
     }
@@ -260,13 +271,11 @@ static enum status find_and_write(struct run *run) {
     run->problem.progress = report_progress;
     run->problem.data = run;
     const int n_fish = run->simulation->school->n_fish, n = STEADY_QUANTITIES * n_fish;
-    run->found.growth = run->found.growth_frequency = NAN;
+    run->found.growth = run->found.growth_frequency = run->found.amplification = NAN;
     NEW(run->arena, run->found.fish, n_fish);
-    NEW(run->arena, run->found.real, n);
-    NEW(run->arena, run->found.imaginary, n);
+    NEW(run->arena, run->found.mode, 2 * n * n);
     NEW(run->arena, run->found.rate, n);
     NEW(run->arena, run->found.omega, n);
-    NEW(run->arena, run->way, n);
 
     // the largest number of events bounds the number of vortices in the file
     const long n_beats = run->values->steady.beats + run->values->steady.output_beats;

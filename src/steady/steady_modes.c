@@ -1,5 +1,6 @@
 /* steady_modes.c: how stable the state is: the modes of an equilibrium, and the multipliers of a beat. */
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 #include "base/mathematics.h"
@@ -102,92 +103,186 @@ void steady_modes_of_multipliers(struct steady_values *found, double period) {
 
 // ---- multipliers
 
-/* disturbance: increment of a slow quantity, in the scale of the quantity; a disturbance that grows beyond small is
- * followed no further. Of at most BEATS beats the last SLOW_BEATS count, and not the first two, in which the fast
- * quantities decay. */
-static const double disturbance = 0.01, small = 0.1;
-enum { BEATS = 8, SLOW_BEATS = 4 };
+/* Increment of a slow quantity, in the scale of the quantity, over the distance per beat in lengths, and limits of the
+ * increment: smaller increments drown in the noise of the wakes, of larger ones the error is the curvature of the map.
+ * After a failure, such as an overlap of two fish, the increment is smaller by the factor shorter. */
+static const double disturbance = 0.04, smallest = 0.02, largest = 0.06, shorter = 0.25, least_disturbance = 1e-3;
 
-/* base, seen: the unknowns, over the scales, after each beat; the first column holds the start. before, after: the
- * columns used for the multipliers, before and after a beat. */
+/* MEMORY: beats of the response of one fish, which is lost in the noise after two. MOST_MEMORY: with the beats in which
+ * the wake of the first fish reaches the last one. SAMPLES: of the errors of the responses. */
+enum { MEMORY = 3, MOST_MEMORY = 12, SAMPLES = 16 };
+
+/* Beats over which the amplification is sought. */
+enum { AMPLIFIED = 32 };
+
 struct disturbances {
     struct steady_problem *problem;
-    struct state *kept;        /* undisturbed state */
-    double *add, *base, *seen; /* (n_unknowns), (n_unknowns, BEATS + 1) */
-    double *before, *after;    /* (n_unknowns, n_columns) */
-    int n_columns;
+    int n_memory;
+    double size;                       /* of an increment, in the scale of the quantity */
+    struct state *kept;                /* undisturbed state */
+    double *start, *to;                /* unknowns of the kept state, and at the start of a beat      (n_unknowns) */
+    double *base, *above, *below;      /* unknowns after each beat                        (n_unknowns, n_memory) */
+    double *response, *error, *sample; /* and its error                     (n_unknowns, n_unknowns, n_memory) */
 };
 
-// simulate from the kept state plus the increment; subtract the undisturbed beats, unless NULL, and stop above small
-static enum status follow_disturbance(struct disturbances *all, double *seen, const double *without, int *n_beats) {
-    struct steady_map *const map = &all->problem->map;
+// increase unknown j (-1: none) for one beat; every later beat starts with the unknowns of the kept state again, so
+// that its change is the memory of the wake
+static enum status follow_disturbance(struct disturbances *all, int j, double size, double *seen) {
+    struct steady_problem *const problem = all->problem;
+    const int n = problem->n_unknowns;
+    TRY(steady_map_return(problem->map.simulation, all->kept));
+    for (int m = 0; m < all->n_memory; m++) {
+        memcpy(all->to, all->start, (size_t)n * sizeof *all->to);
+        if (m == 0 && j >= 0) all->to[j] += size;
+        TRY(steady_problem_put(problem, all->to));
+        TRY(steady_map_beat(&problem->map, NULL, NULL));
+        steady_problem_read(problem, seen + m * n);
+    }
+    return STATUS_OK;
+}
+
+// the response to each unknown by central differences; the difference of the two one-sided differences is an estimate
+// of the noise, and a bound of the curvature, which cancels
+static enum status find_responses(struct disturbances *all) {
     const int n = all->problem->n_unknowns;
-    TRY(steady_map_return(map->simulation, all->kept));
-    TRY(steady_map_add(map, n, all->problem->unknown, all->add));
-
-    for (*n_beats = 0; *n_beats < BEATS; ++*n_beats) {
-        double *const now = seen + (*n_beats + 1) * n;
-        TRY(steady_map_beat(map, NULL, NULL));
-        steady_problem_read(all->problem, now);
-        double most = 0;
-        for (int i = 0; i < n && without; i++) {
-            now[i] -= without[i + (*n_beats + 1) * n];
-            most = larger(most, fabs(now[i]));
+    TRY(follow_disturbance(all, -1, 0, all->base));
+    for (int j = 0; j < n; j++) {
+        double size = all->size;
+        for (;; size *= shorter) {
+            enum status status = follow_disturbance(all, j, size, all->above);
+            if (status == STATUS_OK) status = follow_disturbance(all, j, -size, all->below);
+            if (status == STATUS_OK) break;
+            if (status == STATUS_STOPPED || status == STATUS_MEMORY || size * shorter < least_disturbance)
+                return status;
         }
-        if (*n_beats > 0 && !(most <= small)) break;
-    }
-
-    return STATUS_OK;
-}
-
-// disturb each unknown and collect the columns before and after the last beats
-static enum status disturb_each_unknown(struct disturbances *all) {
-    const struct steady_problem *const problem = all->problem;
-    const size_t n = (size_t)problem->n_unknowns, bytes = n * sizeof *all->seen;
-    int n_beats;
-    TRY(follow_disturbance(all, all->base, NULL, &n_beats));
-    for (size_t j = 0; j < n; j++) {
-        memset(all->add, 0, bytes);
-        all->add[j] = disturbance * steady_map_scale(&problem->map, problem->unknown[j]);
-        TRY(follow_disturbance(all, all->seen, all->base, &n_beats));
-
-        // at least one beat
-        int first = n_beats - SLOW_BEATS;
-        if (first < 2) first = n_beats > 2 ? 2 : 1;
-        for (int k = first; k == first || k < n_beats; k++) {
-            memcpy(all->before + (size_t)all->n_columns * n, all->seen + (size_t)k * n, bytes);
-            memcpy(all->after + (size_t)all->n_columns * n, all->seen + (size_t)(k + 1) * n, bytes);
-            all->n_columns++;
+        for (int m = 0; m < all->n_memory; m++) {
+            for (int i = 0; i < n; i++) {
+                const double above = all->above[i + n * m], below = all->below[i + n * m];
+                all->response[i + n * (j + n * m)] = (above - below) / (2 * size);
+                all->error[i + n * (j + n * m)] = fabs(above + below - 2 * all->base[i + n * m]) / (2 * size);
+            }
         }
     }
     return STATUS_OK;
 }
 
-enum status steady_multipliers_find(struct steady_problem *problem, double *real, double *imaginary, double *way,
-                                    int *n_beats) {
+/* Twice the root mean square deviation of the moduli under errors of random sign, and at least the effect of the last
+ * beat of the memory. A multiplier below its error has decayed: 0. */
+static enum status find_errors(struct arena *arena, const struct disturbances *all, struct steady_multipliers *found) {
+    const int n = all->problem->n_unknowns, n_values = n * n * all->n_memory;
+    double *real, *imaginary;
+    uint64_t random = 1;
+    NEW(arena, real, n);
+    NEW(arena, imaginary, n);
+    for (int s = 0; s <= SAMPLES; s++) {
+        for (int i = 0; i < n_values; i++) {
+            random = random * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+            all->sample[i] = all->response[i] + (random >> 63 ? all->error[i] : -all->error[i]);
+        }
+        const bool is_shorter = s == SAMPLES;
+        TRY(newton_multipliers(arena, n, all->n_memory - is_shorter, is_shorter ? all->response : all->sample, real,
+                               imaginary, NULL));
+        for (int i = 0; i < n; i++) {
+            const double away = fabs(hypot(real[i], imaginary[i]) - hypot(found->real[i], found->imaginary[i]));
+            found->error[i] =
+                is_shorter ? larger(sqrt(found->error[i]), away) : found->error[i] + 4 * away * away / SAMPLES;
+        }
+    }
+
+    for (int i = 0; i < n; i++) {
+        const bool is_pair = found->imaginary[i] > 0 && i + 1 < n;
+        const double error = is_pair ? larger(found->error[i], found->error[i + 1]) : found->error[i];
+        const bool is_lost = hypot(found->real[i], found->imaginary[i]) <= error;
+        for (int k = i; k <= i + is_pair; k++) {
+            if (is_lost) found->real[k] = found->imaginary[k] = 0;
+            found->error[k] = is_lost ? 0 : error;
+        }
+        i += is_pair;
+    }
+    return STATUS_OK;
+}
+
+// the largest norm of the unknowns within some beats after a unit increment of one unknown
+static double find_amplification(struct arena *arena, const struct disturbances *all) {
+    const int n = all->problem->n_unknowns;
+    double *x, most = 0;
+    NEW(arena, x, n * (AMPLIFIED + 1));
+    for (int j = 0; j < n; j++) {
+        memset(x, 0, (size_t)n * (AMPLIFIED + 1) * sizeof *x);
+        x[j] = 1;
+        for (int k = 0; k < AMPLIFIED; k++) {
+            double *const next = x + n * (k + 1), square = 0;
+            for (int m = 0; m < all->n_memory && m <= k; m++) {
+                for (int i = 0; i < n * n; i++) next[i % n] += all->response[i + n * n * m] * x[n * (k - m) + i / n];
+            }
+            for (int i = 0; i < n; i++) square += next[i] * next[i];
+            most = larger(most, sqrt(square));
+        }
+    }
+    return most;
+}
+
+enum status steady_multipliers_find(struct arena *arena, struct steady_problem *problem,
+                                    struct steady_multipliers *found) {
     struct simulation *const simulation = problem->map.simulation;
-    struct arena *const arena = arena_create(simulation->arena, "the multipliers");
-    const size_t n = (size_t)problem->n_unknowns;
-    const int n_before = problem->map.n_beats;
+    struct arena *const scratch = arena_create(simulation->arena, "the multipliers");
+    const int n = problem->n_unknowns, n_before = problem->map.n_beats;
     struct disturbances all = {.problem = problem};
-    NEW(arena, all.add, n);
-    NEW(arena, all.base, n * (BEATS + 1));
-    NEW(arena, all.seen, n * (BEATS + 1));
-    NEW(arena, all.before, n * n * SLOW_BEATS);
-    NEW(arena, all.after, n * n * SLOW_BEATS);
 
-    steady_map_save(arena, simulation, &all.kept);
-    enum status status = disturb_each_unknown(&all);
-    if (status == STATUS_OK) {
-        // change per beat without a disturbance, mean of the last beats; stored in add, which is free now
-        const double *const last = all.base + BEATS * n, *const first = last - SLOW_BEATS * n;
-        for (size_t i = 0; i < n; i++) all.add[i] = (last[i] - first[i]) / SLOW_BEATS;
-        status = newton_multipliers(arena, (int)n, all.n_columns, all.before, all.after, all.add, real, imaginary, way);
+    // the wake of the first fish reaches the last one after so many beats
+    double least = 0, most = 0;
+    for (int f = 0; f < simulation->school->n_fish; f++) {
+        double ahead;
+        steady_map_read(&problem->map, 1, &(struct steady_unknown){f, STEADY_AHEAD}, &ahead);
+        least = smaller(least, ahead);
+        most = larger(most, ahead);
     }
+    const double way = fabs(problem->map.last[0].speed) * problem->map.period;
+    const double beats = (most - least) / way;
+    all.size = fmin(largest, fmax(smallest, disturbance * way / simulation->school->fish[0].length));
+    all.n_memory = MEMORY + (beats <= MOST_MEMORY - MEMORY ? (int)ceil(beats) : MOST_MEMORY - MEMORY);
 
-    if (status == STATUS_OK) status = steady_map_return(simulation, all.kept);
-    arena_free(arena);
-    *n_beats = problem->map.n_beats - n_before;
+    NEW(scratch, all.start, n);
+    NEW(scratch, all.to, n);
+    NEW(scratch, all.base, n * all.n_memory);
+    NEW(scratch, all.above, n * all.n_memory);
+    NEW(scratch, all.below, n * all.n_memory);
+    NEW(scratch, all.response, n * n * all.n_memory);
+    NEW(scratch, all.error, n * n * all.n_memory);
+    NEW(scratch, all.sample, n * n * all.n_memory);
+    *found = (struct steady_multipliers){.n = n};
+    NEW(arena, found->real, n);
+    NEW(arena, found->imaginary, n);
+    NEW(arena, found->error, n);
+    NEW(arena, found->mode, 2 * n * n);
+    NEW(arena, found->way, n);
+
+    // the beats of the search are still the last ones afterwards
+    const size_t n_fish = (size_t)simulation->school->n_fish;
+    struct steady_beat *beats_kept;
+    NEW(scratch, beats_kept, 2 * n_fish);
+    memcpy(beats_kept, problem->map.last, n_fish * sizeof *beats_kept);
+    memcpy(beats_kept + n_fish, problem->map.before, n_fish * sizeof *beats_kept);
+
+    steady_map_save(scratch, simulation, &all.kept);
+    steady_problem_read(problem, all.start);
+    enum status status = find_responses(&all);
+    if (status == STATUS_OK) {
+        status = newton_multipliers(scratch, n, all.n_memory, all.response, found->real, found->imaginary, found->mode);
+    }
+    if (status == STATUS_OK) status = find_errors(scratch, &all, found);
+    if (status == STATUS_OK) {
+        // the change of the last undisturbed beat
+        const double *const last = all.base + n * (all.n_memory - 1);
+        for (int i = 0; i < n; i++) all.to[i] = last[i] - all.start[i];
+        newton_way(scratch, n, all.n_memory, all.response, all.to, found->way);
+        found->amplification = find_amplification(scratch, &all);
+        status = steady_map_return(simulation, all.kept);
+    }
+    memcpy(problem->map.last, beats_kept, n_fish * sizeof *beats_kept);
+    memcpy(problem->map.before, beats_kept + n_fish, n_fish * sizeof *beats_kept);
+    arena_free(scratch);
+    found->n_beats = problem->map.n_beats - n_before;
     problem->map.n_beats = n_before;
     return status;
 }

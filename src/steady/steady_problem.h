@@ -116,10 +116,23 @@ enum status steady_modes_find(struct simulation *simulation, struct steady_value
 /* Fill the exponents of a beat from the multipliers and the period, s. */
 void steady_modes_of_multipliers(struct steady_values *found, double period);
 
-/* Find the multipliers at the current state of the simulation, by decreasing absolute value (n_unknowns). The state is
- * restored on success. way: step to the fixed point of the linearised map, over the scales of the unknowns
- * (n_unknowns). *n_beats: number of beats simulated. Fails with STATUS_SOLVER. */
-enum status steady_multipliers_find(struct steady_problem *problem, double *real, double *imaginary, double *way,
-                                    int *n_beats);
+/* Floquet multipliers: factors by which small disturbances of the slow quantities grow in a beat, by falling absolute
+ * value. */
+struct steady_multipliers {
+    int n;                    /* n_unknowns */
+    double *real, *imaginary; /* 0: the disturbance has decayed below the noise          (n) */
+    double *error;            /* of the absolute value: noise and size of the differences, memory of the wake  (n) */
+    double *mode;             /* real and imaginary parts of the unknowns, over the scales and over the largest
+                                    (n multipliers, n unknowns, 2) */
+    double amplification;     /* largest norm of the unknowns, over the scales, within 32 beats after a unit change
+                                    of one unknown */
+    double *way;              /* step to the fixed point of the linearised map, over the scales of the unknowns (n) */
+    int n_beats;              /* simulated */
+};
+
+/* Find the multipliers at the current state of the simulation. arena: of the arrays. The state is restored on success.
+ * Fails with STATUS_SOLVER, STATUS_CONTACT or STATUS_STOPPED. */
+enum status steady_multipliers_find(struct arena *arena, struct steady_problem *problem,
+                                    struct steady_multipliers *found);
 
 #endif

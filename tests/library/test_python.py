@@ -619,6 +619,7 @@ class Programs(unittest.TestCase):
         values = steady.to_xarray()
         self.assertEqual(float(values["speed"].sel(fish="a")), steady.speed[0])
         np.testing.assert_array_equal(values["multiplier"], steady.multipliers)
+        self.assertTrue(0 < values["multiplier_error"][0] < 0.05)
         with self.assertRaisesRegex(shoal.FileError, "slow.nc"):
             shoal.steady(case)
         self.assertIn("cost_of_transport", dir(steady))
@@ -678,7 +679,7 @@ class Programs(unittest.TestCase):
         found = {key["path"] for key in shoal.keys("smoothing")}
         self.assertTrue({"wake.smoothing", "sheet.smoothing"} <= found < {key["path"] for key in shoal.keys()})
         self.assertIn("speed", {variable["name"] for variable in shoal.keys("speed", output=True)})
-        self.assertEqual(dir(shoal.plot), ["field", "forces", "gait", "pressure", "school", "study", "swim", "time"])
+        self.assertEqual(dir(shoal.plot), ["field", "forces", "gait", "modes", "pressure", "school", "study", "swim", "time"])
         self.assertFalse(hasattr(shoal, "simulate"))
         for name in dir(shoal):
             self.assertTrue(getattr(shoal, name).__doc__ or name == "__version__", name)

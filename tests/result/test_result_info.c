@@ -191,7 +191,10 @@ TEST_WITH(info_shows_the_multipliers_of_a_steady_state_and_a_table, set_up, tear
     struct fixture *f = *state;
     struct steady_fish fish[N_FISH] = {{.speed = 0.5, .place = {0, 0}, .force = {4, 5}, .lift = NAN, .drag = NAN},
                                        {.speed = 0.25, .place = {-3, 2}, .force = {7, 8}, .lift = NAN, .drag = 6}};
-    double real[] = {0.6, 0.6, 0.4}, imaginary[] = {0.6, -0.6, 0};
+    double real[] = {0.6, 0.6, 0.4}, imaginary[] = {0.6, -0.6, 0}, error[] = {0.02, 0.02, 0.01};
+    double mode[3 * N_FISH * STEADY_QUANTITIES * 2] = {0};
+    mode[0] = -1, mode[2 * STEADY_QUANTITIES + 9] = 0.5,
+    mode[2 * 2 * N_FISH * STEADY_QUANTITIES + 2] = 1; /* speed of the first fish, place ahead of the second */
     struct steady_values values = {.n_beats = 12,
                                    .n_multiplier_beats = 30,
                                    .residual = 2e-6,
@@ -200,10 +203,16 @@ TEST_WITH(info_shows_the_multipliers_of_a_steady_state_and_a_table, set_up, tear
                                    .n_multipliers = 3,
                                    .real = real,
                                    .imaginary = imaginary,
+                                   .multiplier_error = error,
+                                   .mode = mode,
+                                   .amplification = 2.5,
                                    .fish = fish};
     static const char *const lines[] = {
         "  steady state after 12 beats: change from beat to beat 2.0e-06, about 3.0e-05 from the fixed point\n"
-        "  multipliers in 30 more beats: 0.6000 +- 0.6000 i, 0.4000: stable\n",
+        "  multipliers in 30 more beats, and the largest parts of their modes:\n"
+        "    0.8485 +- 0.0200, period 8.0 beats: leader speed 1.00, suédois ahead 0.50\n"
+        "    0.4000 +- 0.0100: leader slip 1.00\n"
+        "  stable; a disturbance may grow by the factor 2.5 in 32 beats\n",
         "speed                      0.50000   0.25000  m s-1\n",
         "place, ahead               0.00000  -3.00000  m\nplace, aside               0.00000   2.00000  m\n"
         "force of the fluid, x            4         7  N\nforce of the fluid, y            5         8  N\n",
@@ -213,8 +222,12 @@ TEST_WITH(info_shows_the_multipliers_of_a_steady_state_and_a_table, set_up, tear
     // by the absolute value
     real[0] = real[1] = 0.81;
     values.error = NAN;
-    static const char *const unstable[] = {"from beat to beat 2.0e-06\n", ": 0.8100 +- 0.6000 i, 0.4000: unstable\n"};
+    static const char *const unstable[] = {"from beat to beat 2.0e-06\n",
+                                           "  undecided: 1 is within the error of the largest multiplier;"};
     has_lines(steady_summary(f, &values), 2, unstable);
+    error[0] = error[1] = 0.005;
+    static const char *const surely[] = {"    1.0080 +- 0.0050, period 9.9 beats: ", "  unstable\n"};
+    has_lines(steady_summary(f, &values), 2, surely);
 }
 
 TEST_WITH(info_says_how_bodies_without_a_beat_lose_their_stability, set_up, tear_down) {

@@ -88,71 +88,64 @@ TEST(a_singular_jacobian_is_named) {
     assert_non_null(strstr(status_message(), "singular"));
 }
 
-// ---- eigenvalues of maps of which images are known
+// ---- multipliers of maps with memory
 
-// 0.9 along the first axis, a rotation by 30 degrees that shrinks by 0.8 in the plane of the others
-static void image_of(const double *v, double *image) {
+TEST(multipliers_come_by_size_with_their_modes_and_the_way_to_the_fixed_point) {
+    // 0.9 along (1, 1, 0), a rotation by 30 degrees that shrinks by 0.8 in the plane of (0, 1, 0) and (0, 0, 1)
     const double c = 0.8 * cos(M_PI / 6), s = 0.8 * sin(M_PI / 6);
-    image[0] = 0.9 * v[0];
-    image[1] = c * v[1] - s * v[2];
-    image[2] = s * v[1] + c * v[2];
+    const double matrix[9] = {0.9, 0.9 - c, -s, 0, c, s, 0, -s, c};
+    const double want_way[3] = {3, -1, 2};
+    double real[3], imaginary[3], mode[18], way[3], change[3];
+    for (int i = 0; i < 3; i++) {
+        change[i] = want_way[i];
+        for (int j = 0; j < 3; j++) change[i] -= matrix[i + 3 * j] * want_way[j];
+    }
+    assert_int_equal(newton_multipliers(test_arena(), 3, 1, matrix, real, imaginary, mode), STATUS_OK);
+    newton_way(test_arena(), 3, 1, matrix, change, way);
+    NEAR_ARRAY(3, way, want_way, 1e-13, 0);
+    const double want_real[3] = {0.9, c, c}, want_imaginary[3] = {0, s, -s};
+    NEAR_ARRAY(3, real, want_real, 1e-14, 0);
+    NEAR_ARRAY(3, imaginary, want_imaginary, 1e-14, 0);
+    const double want_mode[6] = {1, 0, 1, 0, 0, 0};
+    NEAR_ARRAY(6, mode, want_mode, 1e-13, 0);
+
+    // each mode of the pair is an eigenvector: A x = lambda x
+    for (int k = 1; k < 3; k++) {
+        const double *const x = mode + 6 * k;
+        for (int i = 0; i < 3; i++) {
+            double image[2] = {0, 0};
+            for (int j = 0; j < 3; j++) {
+                for (int part = 0; part < 2; part++) image[part] += matrix[i + 3 * j] * x[2 * j + part];
+            }
+            NEAR(image[0], real[k] * x[2 * i] - imaginary[k] * x[2 * i + 1], 1e-13, 0);
+            NEAR(image[1], real[k] * x[2 * i + 1] + imaginary[k] * x[2 * i], 1e-13, 0);
+        }
+    }
 }
 
-enum { N = 3, COLUMNS = 5 };
-
-TEST(eigenvalues_come_by_size_and_the_way_to_the_fixed_point_is_told) {
-    // five vectors that span the space, mixed so that no column is an eigenvector
-    const double before[N * COLUMNS] = {1, 2, -1, 0, 1, 3, 2, -1, 1, -2, 0, 1, 1, 1, 1};
-    const double want_way[N] = {3, -1, 2};
-    double after[N * COLUMNS], real[N], imaginary[N], way[N], change[N];
-    image_of(want_way, change);
-    for (int i = 0; i < N; i++) change[i] = want_way[i] - change[i];
-    for (int k = 0; k < COLUMNS; k++) image_of(before + N * k, after + N * k);
-    assert_int_equal(newton_multipliers(test_arena(), N, COLUMNS, before, after, change, real, imaginary, way),
-                     STATUS_OK);
-    NEAR_ARRAY(N, way, want_way, 1e-13, 0);
-    const double want_real[N] = {0.9, 0.8 * cos(M_PI / 6), 0.8 * cos(M_PI / 6)}, want_imaginary[N] = {0, 0.4, -0.4};
-    NEAR_ARRAY(N, real, want_real, 1e-14, 0);
-    NEAR_ARRAY(N, imaginary, want_imaginary, 1e-14, 0);
+TEST(a_memory_adds_roots) {
+    // x_k+1 = 0.5 x_k + 0.24 x_k-1 has the roots 0.8 and -0.3; two of them, uncoupled, give twice 0.8
+    const double one[2] = {0.5, 0.24}, two[8] = {0.5, 0, 0, 0.5, 0.24, 0, 0, 0.24};
+    double real[2], imaginary[2], way;
+    assert_int_equal(newton_multipliers(test_arena(), 1, 2, one, real, imaginary, NULL), STATUS_OK);
+    NEAR(real[0], 0.8, 1e-14, 0);
+    assert_int_equal(newton_multipliers(test_arena(), 2, 2, two, real, imaginary, NULL), STATUS_OK);
+    NEAR(real[0], 0.8, 1e-14, 0);
+    NEAR(real[1], 0.8, 1e-14, 0);
+    newton_way(test_arena(), 1, 2, one, &(double){0.26}, &way);
+    NEAR(way, 1, 1e-14, 0);
 }
 
-TEST(errors_of_single_images_are_averaged) {
-    // one dimension: images of 1, 2, -2 under 0.5, of which the first is wrong by 0.09: least squares have 0.5 + 0.09/9
-    const double before[3] = {1, 2, -2}, after[3] = {0.59, 1, -1};
-    const double change = 0.98;
-    double real, imaginary, way;
-    assert_int_equal(newton_multipliers(test_arena(), 1, 3, before, after, &change, &real, &imaginary, &way),
-                     STATUS_OK);
-    NEAR(real, 0.51, 1e-14, 0);
-    NEAR(imaginary, 0, 0, 0);
-    NEAR(way, 2, 1e-13, 0);
-}
-
-TEST(columns_that_do_not_span_the_space_tell_nothing) {
-    const double before[4] = {0, 0, 0, 0}, after[4] = {1, 1, 2, 2};
-    const double change[2] = {0, 0};
-    double real[2], imaginary[2], way[2];
-    assert_int_equal(newton_multipliers(test_arena(), 2, 2, before, after, change, real, imaginary, way),
-                     STATUS_SOLVER);
+TEST(a_response_that_is_not_finite_has_no_multipliers) {
+    double real, imaginary;
+    assert_int_equal(newton_multipliers(test_arena(), 1, 1, &(double){NAN}, &real, &imaginary, NULL), STATUS_SOLVER);
     assert_non_null(strstr(status_message(), "multipliers"));
 }
 
-TEST(a_direction_that_has_died_has_a_multiplier_of_zero) {
-    // 0.8 along the first axis; of the second only errors are left, which seem to grow
-    const double before[8] = {1, 1e-3, 0.8, 2e-3, 0.64, -1e-3, 0.512, 3e-3};
-    const double after[8] = {0.8, 2e-3, 0.64, -1e-3, 0.512, 3e-3, 0.4096, -5e-3}, change[2] = {0.2, 0};
-    double real[2], imaginary[2], way[2];
-    assert_int_equal(newton_multipliers(test_arena(), 2, 4, before, after, change, real, imaginary, way), STATUS_OK);
-    NEAR(real[0], 0.8, 1e-5, 0);
-    NEAR(real[1], 0, 0, 0);
-    NEAR(imaginary[1], 0, 0, 0);
-    NEAR(way[0], 1, 1e-4, 0);
-}
-
 TEST(a_map_that_keeps_what_it_gets_has_no_fixed_point) {
-    const double before[4] = {1, 0, 0, 1}, change[2] = {1, 1};
-    double real[2], imaginary[2], way[2];
-    assert_int_equal(newton_multipliers(test_arena(), 2, 2, before, before, change, real, imaginary, way), STATUS_OK);
+    const double keeps[4] = {1, 0, 0, 1}, change[2] = {1, 1};
+    double way[2];
+    newton_way(test_arena(), 2, 1, keeps, change, way);
     NEAR(way[0], 0, 0, 0);
     NEAR(way[1], 0, 0, 0);
 }

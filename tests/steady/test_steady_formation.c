@@ -28,7 +28,7 @@ TEST(a_follower_finds_the_place_where_it_is_as_fast_as_its_leader) {
     // about one wavelength, as in experiments: doc/verification.md
     NEAR(spacing(&setup), 1, 0.1, 0);
     NEAR(last[1].place[1], 0, 1e-12, 0);
-    BELOW(hypot(setup.real[0], setup.imaginary[0]), 1);
+    BELOW(hypot(setup.multipliers.real[0], setup.multipliers.imaginary[0]), 1);
     // a run from this start needs more than 100 beats; five beats for each unknown and Jacobian took 60
     AT_MOST(setup.problem.map.n_beats, 40);
     // the formation is stable: beats without a search keep the places
@@ -41,8 +41,8 @@ TEST(between_two_stable_places_is_one_that_the_follower_leaves) {
     steady_setup_find(&setup, PLATES "fish: [{}, {start: {position: [7.4, 0]}}]\n");
     // half a wavelength beyond the first stable place
     NEAR(spacing(&setup), 1.57, 0.1, 0);
-    ABOVE(setup.real[0], 1.5);
-    NEAR(setup.imaginary[0], 0, 0, 0);
+    ABOVE(setup.multipliers.real[0], 1.5);
+    NEAR(setup.multipliers.imaginary[0], 0, 0, 0);
     // after a displacement to either side the follower moves to the next stable place, by at least one length
     struct state *kept = NULL;
     steady_map_save(setup.simulation->arena, setup.simulation, &kept);
@@ -80,7 +80,7 @@ TEST(a_diamond_of_plates_is_found_and_stable) {
                       "  {start: {position: [10.6, 0]}}]\n");
     assert_int_equal(setup.problem.n_unknowns, 7);
     AT_MOST(setup.problem.map.n_beats, 60);
-    BELOW(hypot(setup.real[0], setup.imaginary[0]), 1);
+    BELOW(hypot(setup.multipliers.real[0], setup.multipliers.imaginary[0]), 1);
     const struct steady_beat *const last = setup.problem.map.last;
     double place[4];
     for (int f = 0; f < 4; f++) place[f] = last[f].place[0];
@@ -102,7 +102,7 @@ TEST(a_follower_of_a_held_leader_takes_its_speed) {
     // place and speed of the follower change by at most the tolerance per beat
     NEAR(setup.problem.map.last[1].speed, 4, 2 * 3e-3, 0);
     NEAR(spacing(&setup), 1, 0.15, 0);
-    BELOW(hypot(setup.real[0], setup.imaginary[0]), 1);
+    BELOW(hypot(setup.multipliers.real[0], setup.multipliers.imaginary[0]), 1);
     // the follower falls back behind a faster leader with a small amplitude
     steady_setup_fails(PLATES
                        "fish: [{motion: {surge: given, speed: 6, heave: 0.03}}, {start: {position: [5.2, 0]}}]\n",

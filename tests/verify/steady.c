@@ -30,8 +30,7 @@ static void note_speed(const struct steady_problem *problem, void *data) {
 static struct found search_for(const char *text) {
     struct found found = {.n_beats = 0};
     struct verify_search search;
-    double real[STEADY_QUANTITIES], imaginary[STEADY_QUANTITIES], way[STEADY_QUANTITIES];
-    int n_beats;
+    struct steady_multipliers multipliers;
     verify_search_open(&search, text);
     struct steady_problem *const problem = &search.problem;
     problem->progress = note_speed;
@@ -41,8 +40,8 @@ static struct found search_for(const char *text) {
     found.speed = problem->map.last[0].speed;
     found.strouhal = search.simulation->diagnostics->fish[0].strouhal;
     found.cost = problem->map.last[0].actuation + problem->map.last[0].driving;
-    verify_ok(steady_multipliers_find(problem, real, imaginary, way, &n_beats));
-    found.multiplier = hypot(real[0], imaginary[0]);
+    verify_ok(steady_multipliers_find(search.simulation->arena, problem, &multipliers));
+    found.multiplier = hypot(multipliers.real[0], multipliers.imaginary[0]);
     return found;
 }
 
@@ -125,14 +124,11 @@ static void let_run(struct verify_search *steered, int n_beats) {
 
 // the largest multiplier
 static double find_steered(struct verify_search *steered, const char *text) {
-    double real[2 * STEADY_QUANTITIES], imaginary[2 * STEADY_QUANTITIES], way[2 * STEADY_QUANTITIES];
-    int n_beats;
+    struct steady_multipliers multipliers;
     verify_search_open(steered, text);
     verify_ok(steady_search_run(&steered->problem));
-    verify_ok(steady_multipliers_find(&steered->problem, real, imaginary, way, &n_beats));
-    // the last beat was one of a disturbance
-    let_run(steered, 1);
-    return hypot(real[0], imaginary[0]);
+    verify_ok(steady_multipliers_find(steered->simulation->arena, &steered->problem, &multipliers));
+    return hypot(multipliers.real[0], multipliers.imaginary[0]);
 }
 
 static void circle(const char *name, const char *text) {

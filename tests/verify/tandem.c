@@ -81,8 +81,7 @@ static double growth(struct steady_problem *problem, const struct state *kept) {
 static struct found find(const struct pair *pair, int n_fish, int is_stability_wanted) {
     struct verify_search search;
     struct found found = {.largest = NAN};
-    double real[2 * STEADY_QUANTITIES], imaginary[2 * STEADY_QUANTITIES], way[2 * STEADY_QUANTITIES];
-    int n_beats;
+    struct steady_multipliers multipliers;
     char text[1024];
     text_of(pair, n_fish, "surge: free", sizeof text, text);
     verify_search_open(&search, text);
@@ -92,8 +91,8 @@ static struct found find(const struct pair *pair, int n_fish, int is_stability_w
     if (n_fish > 1) found.place = (-problem->map.last[1].place[0] - pair->length) / found.speed;
     found.n_beats = problem->map.n_beats;
     if (is_stability_wanted) {
-        verify_ok(steady_multipliers_find(problem, real, imaginary, way, &n_beats));
-        found.largest = hypot(real[0], imaginary[0]);
+        verify_ok(steady_multipliers_find(search.simulation->arena, problem, &multipliers));
+        found.largest = hypot(multipliers.real[0], multipliers.imaginary[0]);
         struct state *kept = NULL;
         steady_map_save(search.simulation->arena, search.simulation, &kept);
         found.wander = wander(problem);
