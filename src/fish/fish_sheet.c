@@ -80,7 +80,8 @@ static void strip_set(struct arena *arena, struct fish *fish, double leg_length)
     NEW(arena, fish->point_half, fish->n_control + fish->n_edges + 1);
     NEW(arena, fish->control_widening, fish->n_control);
     fish->strip_depth = fish->depth[fish->n_edges - 1];
-    fish->leg_length = leg_length * fish->strip_depth * fish->strip_depth / 8;
+    const double resolved = fmax(fish->strip_depth, fish->smoothing);
+    fish->leg_length = leg_length * resolved * resolved / 8;
     for (int k = 0; k < fish->n_edges; k++) fish->depth_varies |= fabs(fish->depth[k] - fish->strip_depth) > 0;
 
     double slope;

@@ -128,6 +128,23 @@ TEST(legs_grow_along_the_sheet_and_old_stretches_have_fewer_points) {
     for (int age = 1; age < N; age++) assert_int_equal(n_points[age], age == 1 ? 4 : age <= 4 ? 2 : 1);
 }
 
+// The legs of a fish less deep than the smoothing of its wake are as long as those of a fish as deep as the smoothing.
+// If they follow the depth, the wake of a start from rest stretches without end, and the fish diverges.
+TEST(the_wake_of_a_slender_fish_from_rest_does_not_break_up) {
+    struct simulation *const simulation = school_simulation(
+        "time: {end: 8, shedding_interval: 0.02}\nfish: [{nodes: 9, sheet_points: 101, body: {depth: 0.05}}]\n");
+    const struct fish *const fish = simulation->school->fish;
+    NEAR(fish->leg_length, 0.1 * 0.1 / 8, 0, 1e-15);
+    double label = 0, shed = 0;
+    for (int i = 1; i <= 32; i++) {
+        school_run(simulation, 0.25 * i);
+        const struct wake *const wake = &simulation->state->wake[0];
+        for (int k = 0; k < wake->n_vortex; k++) label = fmax(label, fabs(wake->circulation[k]));
+        shed = fmax(shed, fabs(simulation->state->y[fish->at.circulation]));
+    }
+    ABOVE(1.5 * shed, label);
+}
+
 // with finite span labels decay; else the circulation of every young stretch decays with the age of the newer marker
 TEST(stretches_decay_by_labels_only_if_rings_must_stay_closed) {
     static const char *const fish[] = {SPAN("infinite"), SPAN("finite")};
