@@ -1,4 +1,4 @@
-/* bound_sheet.c: normal velocity zero at the control points, total circulation zero, smooth flow off the tail. */
+/* bound_sheet.c: impermeability, Kelvin's theorem and the Kutta condition, each with its derivatives below it. */
 #include "force/bound_sheet.h"
 
 #include <math.h>
@@ -6,10 +6,10 @@
 
 #include "base/wide.h"
 
-/* Control points that are evaluated at once. */
+/* So many control points are evaluated at once. */
 enum { CHUNK = 32 };
 
-// add the derivative of a row with respect to a tangent vector of the body, by the nodes of its two stencils
+// add how a row changes with a tangent vector of the body, by the nodes of the two stencils of the vector
 static void bound_sheet_tangent_jacobian(const struct fish *fish, const struct tangent *tangent, int row,
                                          const double by_vector[2], struct sparse *jacobian) {
     const struct stencil *const parts[2] = {&tangent->from, &tangent->to};
@@ -43,7 +43,7 @@ double bound_sheet_end_correction(const struct fish *fish, int c, int j) {
     return (j == last ? -2 : 1) * fish->end_correction[c] * fish->sheet_weight[j];
 }
 
-// values at n <= CHUNK control points from the first on, by a matrix of fish.h
+// set value at n <= CHUNK control points from the first on, by a matrix of fish.h
 static WIDE(void, at_control_points,
             (const struct fish *fish, const double *matrix, const double *of_nodes, int first, int n,
              double *restrict value),
@@ -55,7 +55,6 @@ static WIDE(void, at_control_points,
     }
 }
 
-// normals at n <= CHUNK control points from the first on
 static void control_normals(const struct fish *fish, const double *y, int first, int n, double normal[2][CHUNK]) {
     double along[2][CHUNK];
     at_control_points(fish, fish->control_by_node[1], y + fish->at.x, first, n, along[0]);
@@ -71,7 +70,6 @@ void bound_sheet_residual(const struct fish *fish, double removed, const double 
                           double *residual) {
     double *const row = residual + fish->at.gamma;
 
-    // impermeability
     for (int first = 0; first < fish->n_control; first += CHUNK) {
         const int n = fish->n_control - first < CHUNK ? fish->n_control - first : CHUNK;
         double normal[2][CHUNK], vx[CHUNK], vy[CHUNK];
@@ -87,7 +85,6 @@ void bound_sheet_residual(const struct fish *fish, double removed, const double 
         }
     }
 
-    // Kelvin's theorem
     row[fish->n_control] = bound_sheet_circulation(fish, y) + y[fish->at.circulation] - removed;
 }
 
@@ -109,7 +106,7 @@ void bound_sheet_jacobian(const struct fish *fish, const double *u, const double
             sparse_add(jacobian, row, fish->at.gamma + j, bound_sheet_end_correction(fish, c, j));
         }
 
-        // the normal turns with the tangent e: dn = -t (n.de)/|e|
+        // the normal turns with the tangent vector e: dn = -t (n.de)/|e|
         const double turn = -(slip[0] * body.t[0] + slip[1] * body.t[1]) / body.length;
         const double by_vector[2] = {turn * body.n[0], turn * body.n[1]};
         bound_sheet_tangent_jacobian(fish, &fish->control_tangent[c], row, by_vector, jacobian);
@@ -135,7 +132,7 @@ void bound_sheet_flow_jacobian(const struct fish *fish, const struct influence_b
     }
 }
 
-// velocity of the fluid relative to the tail (slip), and its tangential component (return value)
+// find the velocity of the fluid relative to the tail (slip); returns its tangential component
 static double tail_slip_along(const struct fish *fish, const struct direction *body, const double *u, const double *v,
                               const double *y, double slip[2]) {
     const int p = flow_tail(fish), tail = fish->n_nodes - 1;

@@ -1,4 +1,4 @@
-/* drag.c: drag on an edge in the frame of the edge, and the derivatives of this drag. */
+/* drag.c: the laws of drag along and across an edge, each with its slope. Another law goes beside them. */
 #include "force/drag.h"
 
 #include <math.h>
@@ -6,7 +6,7 @@
 #include "body/rod.h"
 #include "flow/flow_at_bodies.h"
 
-/* Drag at a speed, N, and the derivative by the speed, N s m-1. */
+/* The drag at a speed, N, and its derivative by the speed, N s m-1. */
 struct drag_at {
     double force, slope;
 };
@@ -17,25 +17,25 @@ static struct drag_at drag_speed_law(const struct fish *fish, double factor, dou
                             factor * (2 * fabs(speed) + fish->linear_speed)};
 }
 
-// tangential drag on edge k; waving: K_w
+// tangential drag on edge k; waving: K_w, by which waving raises the friction
 static struct drag_at drag_tangential(const struct fish *fish, int k, double waving, double speed) {
     if (fish->friction == FRICTION_QUADRATIC) return drag_speed_law(fish, fish->drag_tangential[k], speed);
 
-    // c_t (u^2 + u0^2)^(1/4) u
+    // laminar: c_t (u^2 + u0^2)^(1/4) u
     if (fish->friction == FRICTION_LAMINAR) {
         const double size = hypot(speed, fish->friction_speed);
         const double by_speed = sqrt(size) * (1 + speed / size * (speed / size) / 2);
         return (struct drag_at){fish->drag_tangential[k] * (sqrt(size) * speed), fish->drag_tangential[k] * by_speed};
     }
 
-    // B: turbulent fraction, 1 - B: laminar fraction; dB/ds2 = 2 B (1 - B)/s2
+    // B is the turbulent fraction and 1 - B the laminar one, and dB/ds2 = 2 B (1 - B)/s2
     const double square = speed * speed + fish->friction_speed * fish->friction_speed;
     const double ratio = square * fish->past_transition[k], laminar = 1 / (1 + ratio * ratio), turbulent = 1 - laminar;
     const double by_square = 2 * turbulent * laminar / square;
     const double factor = fish->form * (1 + (waving - 1) * laminar);
     const double factor_slope = -fish->form * (waving - 1) * by_square;
 
-    // laminar and turbulent friction over the speed, blended, with the derivative by s2
+    // laminar and turbulent friction over the speed are blended; slope is the derivative by s2
     const double blasius = fish->drag_tangential[k] * sqrt(sqrt(square));
     const double power_law = fish->drag_turbulent[k] * pow(square, 0.4);
     const double sum = laminar * blasius + turbulent * power_law;

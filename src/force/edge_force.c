@@ -1,5 +1,5 @@
-/* edge_force.c: drag and reaction of every edge on the nodes of the edge, the tail flux on the last node, and the
- * derivatives. */
+/* edge_force.c: shares drag and reaction of every edge between its nodes, adds the tail flux to the last node, and
+ * gives the derivatives. */
 #include "force/edge_force.h"
 
 #include <math.h>
@@ -10,8 +10,7 @@
 #include "force/drag.h"
 #include "force/reactive.h"
 
-// forces of one edge: the drag on the edge, the reactive force on each node, and the tail flux on the tail node (last
-// edge only)
+// the forces of one edge: the drag on the edge, the reactive force on each node, and, on the last edge, the tail flux
 struct edge_forces {
     struct edge edge;
     double drag[2], friction[2], reactive[2][2], tail[2];
@@ -92,7 +91,7 @@ struct fluid_forces edge_force_sum(const struct fluid_force *force, const struct
     return sum;
 }
 
-// derivatives of all forces of edge k on each node; half of the drag acts on each node
+// how all forces of edge k on each node change; half of the drag acts on each of them
 static void slope_of_edge(const struct fluid_force *force, const struct flow_at_body *flow, int k,
                           const struct edge *edge, struct reaction_slope *slope) {
     const struct fish *const fish = force->fish;
@@ -119,7 +118,6 @@ void edge_force_jacobian(const struct fluid_force *force, const struct flow_at_b
         struct reaction_slope slope;
         slope_of_edge(force, flow, k, &edge, &slope);
 
-        // rows: components of both nodes; columns: components of both nodes
         for (int row = 0; row < 4; row++) {
             const int end = row / 2, i = row % 2, equation = edge_acceleration(fish, i, k + end);
             const double mass = fish->mass[k + end];
@@ -178,7 +176,7 @@ struct fluid_power edge_force_power(const struct fluid_force *force, const struc
         if (reaction) power.added_mass += reaction->power(fish, k, &edge, w, flow->acceleration);
     }
 
-    // momentum flux at the tail: never positive in still fluid
+    // the momentum flux at the tail, whose power is never positive in still fluid
     if (fish->tail_added_mass > 0) {
         double on_tail[2];
         tail_flux_force(fish, flow, y, on_tail);

@@ -1,12 +1,12 @@
 /* edge_force.h: the force of the fluid at the midpoint of every edge: drag, the reaction of the fluid that the edge
- * accelerates, and the tail flux. The force models published and reactive consist of it, and pressure takes the drag
- * from it. doc/model.md, section 9. Tested by tests/force/test_edge_force.c. */
+ * accelerates, and the tail flux. The models published and reactive consist of nothing else, and pressure takes its
+ * drag from here. doc/model.md, section 9. Tested by tests/force/test_edge_force.c. */
 #ifndef EDGE_FORCE_H
 #define EDGE_FORCE_H
 
 #include "force/force_model.h"
 
-/* The functions of struct force_model for the forces of the edges, whose reaction is that of force->model. */
+/* The functions of struct force_model for forces on edges; the reaction is the one of force->model. */
 void edge_force_residual(const struct fluid_force *force, const struct flow_at_body *flow, const double *y,
                          double *residual);
 void edge_force_jacobian(const struct fluid_force *force, const struct flow_at_body *flow, const double *y,

@@ -1,4 +1,5 @@
-/* pressure.c: added momentum and its rotation, convection along the sheet, suction, and the derivatives. */
+/* pressure.c: the added momentum and how it rotates, convection along the sheet, and suction, with the derivatives of
+ * each. The force model that these make is at the end. */
 #include "force/pressure.h"
 
 #include <math.h>
@@ -10,8 +11,8 @@
 #include "force/edge_force.h"
 #include "force/force_model.h"
 
-/* Values at the control points by full matrices: X' in x and y, velocity in x and y, circulation of the interval, and
- * circulation between nose and point. */
+/* What is evaluated at the control points by full matrices: X' in x and y, velocity in x and y, circulation of the
+ * interval, and circulation between nose and point. */
 enum { LINE, VELOCITY = 2, AROUND = 4, BEFORE, N_AT_POINTS };
 
 static void pressure_create(struct arena *arena, struct fluid_force *force) {
@@ -43,8 +44,8 @@ static void pressure_create(struct arena *arena, struct fluid_force *force) {
     }
 }
 
-// R = sum over j: P_j times the circulation of vortex j; strength: the unknowns or the rates of the unknowns. R of the
-// same circulations is kept: the energy balance of a step needs R twice.
+// R is the sum over j of P_j times the circulation of vortex j. strength: the unknowns, or their rates. If the
+// circulations are the same as before, R is kept, because the energy balance of a step needs it twice.
 static void pressure_find_matrix(struct pressure *p, const double *strength, struct pressure_matrix *to) {
     const struct fish *const fish = p->fish;
     bool is_new = 0;
@@ -57,7 +58,7 @@ static void pressure_find_matrix(struct pressure *p, const double *strength, str
     if (is_new) sheet_integrals_matrix(fish->integrals, to->circulation, p->parts, to->value);
 }
 
-// add E3 R x to the pairs of all nodes; x: x components of all nodes, then y components
+// add E3 R x to the pairs of all nodes; in x, too, all x components come first
 static void pressure_add_product(struct pressure *p, const struct pressure_matrix *matrix, const double *x,
                                  double *to) {
     const int n = p->fish->n_nodes;
@@ -66,25 +67,25 @@ static void pressure_add_product(struct pressure *p, const struct pressure_matri
     wide_multiply(n, n, matrix->value, x, to + n);
 }
 
-// tau: tangential velocity of the fluid relative to the body
+// tau, the tangential velocity of the fluid relative to the body
 static double slip_along(const struct pressure_point *point) {
     return edge_dot(point->slip, point->body.t);
 }
 
-// add forces at the control points, x then y, to the rows ax, ay of all nodes: forces per mass
+// add forces at the control points, x then y, to the rows ax, ay of all nodes, as forces per mass
 static void spread_forces(const struct pressure *p, double *column) {
     const int n = p->fish->n_nodes, n_control = p->fish->n_control;
     wide_multiply(n, n_control, p->share, p->spread, column);
     wide_multiply(n, n_control, p->share, p->spread + n_control, column + n);
 }
 
-// forces at the control points, interpolated to the nodes: convection; with rings also the spanwise flow and the force
-// along the side edges (doc/model.md, sections 15 and 18)
+// Add the forces that act at the control points: convection, and with rings the spanwise flow and the force along the
+// side edges (doc/model.md, sections 15 and 18).
 static void pressure_convect(struct pressure *p, const struct flow_at_body *flow, const double *y) {
     const struct fish *fish = p->fish;
     const int n = fish->n_nodes, n_control = fish->n_control;
 
-    // values at all control points; with rings also the circulation before each point
+    // values at all control points, with rings also the circulation before each of them
     double *const at = p->at_points;
     for (int i = 0; i < 2; i++) {
         wide_product(n_control, n, fish->control_by_node[1], y + fish->at.x + i * n, at + (LINE + i) * n_control);
@@ -98,7 +99,6 @@ static void pressure_convect(struct pressure *p, const struct flow_at_body *flow
 
     double *const x = p->spread, *const z = p->spread + n_control;
     for (int c = 0; c < n_control; c++) {
-        // slip, and circulation of the interval
         struct pressure_point *const point = &p->point[c];
         const double *const value = at + c;
         point->body = fish_direction_of((const double[2]){value[LINE * n_control], value[(LINE + 1) * n_control]});
@@ -128,7 +128,7 @@ static void pressure_convect(struct pressure *p, const struct flow_at_body *flow
     for (int i = 0; i < 2 * n; i++) p->force[i] += fish->mass[i % n] * p->parts[i];
 }
 
-// f = full bound/(full^4 + bound^4)^(1/4), from the ratio of the smaller to the larger
+// a smooth minimum, full bound/(full^4 + bound^4)^(1/4), from the ratio of the smaller to the larger
 struct suction_law pressure_suction_law(double full, double bound) {
     const double least = fmin(full, bound), most = fmax(full, bound);
     const double ratio = most > 0 ? least / most : 0, fourth = ratio * ratio * ratio * ratio;
@@ -151,7 +151,7 @@ void pressure_update(struct pressure *p, const struct flow_at_body *flow, const 
     pressure_add_product(p, &p->matrix, y + fish->at.vx, p->force);
     pressure_convect(p, flow, y);
 
-    // suction on the nose, and the part of the attached suction lost to separation
+    // the suction on the nose, and how much of the attached suction separation takes away
     const double strength = fish->nose_factor * y[fish->at.gamma], full = strength * strength;
     const double square = fish->suction_limit * fish->suction_limit, tau = slip_along(&p->point[0]);
     const struct suction_law law =
@@ -176,7 +176,8 @@ int pressure_momentum_row(const struct fish *fish, bool at_start, int i, int k) 
     return (is_given ? fish->at.px : fish->at.vx) + i * fish->n_nodes + k;
 }
 
-// the relation of p, v and I in one of the two rows; in the other one dp/dt = a, or nothing where v is given
+// The relation of p, v and I goes into one of the two rows of a component. The other one says dp/dt = a, or nothing
+// where v is given.
 static void pressure_motion_residual(const struct fluid_force *force, bool at_start, const double *y, const double *yp,
                                      double *residual) {
     const struct fish *const fish = force->fish;
@@ -259,7 +260,7 @@ static void pressure_jacobian(const struct fluid_force *force, const struct flow
     double *const column = p->parts;
 
     for (int m = 0; m < 2 * n; m++) {
-        // convection: n t of every control point
+        // convection: n t at every control point
         const int j = m / n;
         const double *const weight = fish->control_by_node[0] + (long)(m % n) * n_control;
         for (int c = 0; c < n_control; c++) {
@@ -271,7 +272,7 @@ static void pressure_jacobian(const struct fluid_force *force, const struct flow
         memset(column, 0, 2 * (size_t)n * sizeof *column);
         spread_forces(p, column);
 
-        // rotation: -E3; suction: tau
+        // rotation: -E3; suction: through tau
         const double *const rotation = p->matrix.value + (long)(m % n) * n;
         for (int k = 0; k < n; k++) column[(1 - j) * n + k] += (j == 0 ? -1 : 1) * rotation[k] / fish->mass[k];
         for (int i = 0; i < 2; i++)
@@ -286,8 +287,8 @@ static void pressure_own_jacobian(const struct fluid_force *force, const double 
     const int n = fish->n_nodes, n_control = fish->n_control;
     double *const at_point[2] = {p->spread, p->spread + n_control};
 
-    // by the positions. Convection: the tangent turns with X', dt = n (n.dX')/|X'|, dn = -t (n.dX')/|X'|; spanwise
-    // flow: E3 dx_c is linear in the positions
+    // By the positions. Convection changes because the tangent turns with X', dt = n (n.dX')/|X'|, dn = -t
+    // (n.dX')/|X'|. The spanwise flow changes because E3 dx_c is linear in the positions.
     for (int m = 0; m < 2 * n; m++) {
         const int i = m / n;
         const double *const slope = fish->control_by_node[1] + (long)(m % n) * n_control;
@@ -306,7 +307,8 @@ static void pressure_own_jacobian(const struct fluid_force *force, const double 
         spread_forces(p, rows->value + (long)m * rows->n_rows);
     }
 
-    // suction by strength and tangent at the nose, and through tau by the tangent at control point 0
+    // suction changes with the strength and the tangent at the nose, and through tau with the tangent at control point
+    // 0
     const struct direction *const nose = &p->nose, *const first = &p->point[0].body;
     const double *const turn = fish->nose_tangent.to.weight, *const turn_first = fish->control_tangent[0].to.weight;
     const double suction = -edge_dot(p->suction, nose->t), slip_across = edge_dot(p->point[0].slip, first->n);
@@ -374,7 +376,7 @@ static void pressure_flow_jacobian(const struct fluid_force *force, const struct
         }
         spread_forces(p, rows->value + m * rows->n_rows);
 
-        // suction: tau
+        // suction, through tau
         const double by_slip = p->by_slip * (first->t[0] * u[0] + first->t[1] * v[0]) / fish->mass[0];
         for (int i = 0; i < 2; i++) rows->value[m * rows->n_rows + i * fish->n_nodes] += by_slip * p->nose.t[i];
     }
@@ -388,7 +390,7 @@ void pressure_update_rate(struct pressure *p, const double *y, const double *yp)
     pressure_add_product(p, &p->rate, y + fish->at.x, p->momentum_rate);
 }
 
-// amplitude of the kink of the sheet at the tail, from the strengths or from the rates of the strengths
+// the amplitude of the kink of the sheet at the tail, from the strengths or from their rates
 static double tail_kink(const struct fish *fish, const double *y) {
     const int last = fish->n_sheet - 1;
     const double *const strength = y + fish->at.gamma;
@@ -404,7 +406,7 @@ struct pressure_sheet pressure_sheet_at(const struct pressure *p, int c, const d
     const double *const circulation = fish->integrals->circulation + c;
     const struct pressure_point *const point = &p->point[c];
 
-    // length of the interval around the control point, which contains the circulation of the point
+    // the interval around the control point, which holds the circulation of the point
     const double length = point->body.length * fish->control_interval[c];
     double rate = fish->integrals->kink_circulation[c] * tail_kink(fish, yp);
 
@@ -509,7 +511,8 @@ static struct fluid_power pressure_fluid_power(const struct fluid_force *force, 
     return power;
 }
 
-// the momentum of the fluid, and the bound circulation at the tail: together they equal the sum over the control points
+// The momentum of the fluid, plus the bound circulation as if it were at the tail: together they equal the sum over the
+// control points.
 static void pressure_add_impulse(const struct fluid_force *force, const struct sources *bound, double factor,
                                  const double *y, double impulse[3]) {
     const struct fish *const fish = force->fish;

@@ -1,4 +1,4 @@
-/* reactive.c: the flux at the tail; Lagrange's equations of mu w_n^2/2; the published added mass. */
+/* reactive.c: first the flux at the tail, then Lagrange's equations of mu w_n^2/2, then the published added mass. */
 #include "force/reactive.h"
 
 #include <math.h>
@@ -7,13 +7,13 @@
 
 // ---- m_L (min(w_t, 0) w_n n - w_n^2/2 t) with direction and velocity of the fluid at the tail
 
-/* Extrapolation weights to the tail, half an edge behind the midpoint of the last edge; the last edge comes first.
- * Angle: parabola through three edges. Velocity: line through two midpoints. */
+/* Weights of the extrapolation to the tail, half an edge behind the midpoint of the last edge, which comes first. The
+ * angle follows a parabola through three edges, the velocity a line through two midpoints. */
 enum { N_ANGLES = 3, N_MIDPOINTS = 2 };
 static const double angle_weight[N_ANGLES] = {15.0 / 8, -10.0 / 8, 3.0 / 8};
 static const double flow_weight[N_MIDPOINTS] = {1.5, -0.5};
 
-// the last edges (last edge first); direction of the body at the tail; velocity of the tail relative to the fluid
+// the last edges, the last one first; direction of the body at the tail; velocity of the tail relative to the fluid
 struct tail {
     struct edge edge[N_ANGLES];
     double t[2], n[2];
@@ -25,7 +25,7 @@ static struct tail tail_at(const struct fish *fish, const struct flow_at_body *f
     const int last = fish->n_edges - 1;
     for (int i = 0; i < N_ANGLES; i++) tail.edge[i] = edge_at(fish, last - i, y);
 
-    // extrapolate the direction: the weights sum to 1, so the turn depends only on the angles of the last two joints
+    // the weights of the angles sum to 1, so the direction depends only on the turns at the last two joints
     double angle[2];
     for (int i = 0; i < 2; i++) {
         const struct edge *const after = &tail.edge[i], *const before = after + 1;
@@ -39,7 +39,6 @@ static struct tail tail_at(const struct fish *fish, const struct flow_at_body *f
         tail.n[i] = c * tail.edge[0].n[i] - s * tail.edge[0].t[i];
     }
 
-    // extrapolate the velocity of the fluid
     const double *const u[2] = {flow->u, flow->v};
     for (int i = 0; i < 2; i++) {
         tail.w[i] = y[edge_velocity(fish, i, last + 1)];
@@ -51,7 +50,7 @@ static struct tail tail_at(const struct fish *fish, const struct flow_at_body *f
     return tail;
 }
 
-// derivatives of the force: by w [component][component of w], and by a rotation of the tail (dt = n, dn = -t)
+// derivatives of the force: by w, as [component][component of w], and by a rotation of the tail (dt = n, dn = -t)
 static void tail_slope(const struct fish *fish, const struct tail *tail, double by_velocity[2][2], double by_turn[2]) {
     const double *const t = tail->t, *const n = tail->n, mass = fish->tail_added_mass;
     const double wt = tail->wt, wn = tail->wn, leaving = fmin(wt, 0), leaves = wt < 0;
@@ -87,7 +86,7 @@ void tail_flux_jacobian(const struct fish *fish, const struct flow_at_body *flow
         for (int j = 0; j < 2; j++) {
             sparse_add(jacobian, row, edge_velocity(fish, j, node), -by_velocity[i][j] / fish->mass[node]);
 
-            // an edge turns by n/l per displacement of its end
+            // an edge turns by n/l if its end moves by one
             for (int k = 0; k < N_ANGLES; k++) {
                 const struct edge *const edge = &tail.edge[k];
                 const double by_end = by_turn[i] * angle_weight[k] * edge->n[j] / edge->length / fish->mass[node];
@@ -121,12 +120,12 @@ void tail_flux_flow_jacobian(const struct fish *fish, const struct flow_at_body 
 
 // ---- Lagrange's equations of mu w_n^2/2
 
-// components of w and of the relative acceleration a - b in the frame of the edge, and the coefficients of the force
+// w and the relative acceleration a - b in the frame of the edge, and the coefficients of the force
 struct frame {
     double wt, wn, at, an;
     double turn_rate;
     double push; /* coefficient of n in the force: (a - b).n - turn_rate w_t */
-    double pair; /* mu w_n w_t/l: Munk's couple on the edge over the length of the edge */
+    double pair; /* mu w_n w_t/l: Munk's couple on the edge, over its length */
 };
 
 static struct frame reactive_frame(const struct fish *fish, int k, const struct edge *edge, const double w[2],
@@ -163,7 +162,7 @@ static void lagrange_slope(const struct fish *fish, int k, const struct edge *ed
         for (int j = 0; j < 2; j++) slope->by_acceleration[i][j] = -half_mass * n[i] * n[j];
     }
 
-    // by a rotation: dw_n = -w_t, dw_t = w_n, d(a.n) = -a.t
+    // a rotation changes the components: dw_n = -w_t, dw_t = w_n, d(a.n) = -a.t
     const struct frame f = reactive_frame(fish, k, edge, w, b);
     const double rate_by_turn = -edge_dot(edge->rate, t) / l;
     const double push_by_turn = -f.at - rate_by_turn * f.wt - f.turn_rate * f.wn;

@@ -1,4 +1,5 @@
-/* sensor_pressure.c: rate of the potential at the control points; Bernoulli's equation on both sides at the sensors. */
+/* sensor_pressure.c: the rate of the potential at the control points, and Bernoulli's equation on both sides at the
+ * sensors. */
 #include <math.h>
 #include <stddef.h>
 
@@ -6,14 +7,14 @@
 #include "flow/flow_at_bodies.h"
 #include "force/pressure.h"
 
-/* One source: with the rate dC/dt of the circulation before the source, a dipole dC/dt dx. */
+/* One source. If the circulation before it changes at the rate dC/dt, it also acts as a dipole dC/dt dx. */
 struct sensor_source {
     struct source at;
     double velocity[2]; /* m s-1 */
     double dipole[2];   /* m3 s-2 */
 };
 
-/* The control points of a body. */
+/* The control points of a body, at which the sources act. */
 struct sensor_targets {
     const struct flow *flow;
     const struct state *state;
@@ -28,7 +29,7 @@ static void sensor_velocity(const struct sensor_targets *at, int c, double v[2])
     v[1] = at->at.v[c] - at->pressure->point[c].slip[1];
 }
 
-// add one source at all control points: K . (q (v - V) + dC/dt dx), and g (v - V) x d of the legs
+// add one source at all control points: K . (q (v - V) + dC/dt dx), and g (v - V) x d for its leg
 static void sensor_add(const struct sensor_targets *at, const struct kernel_pair *pair,
                        const struct sensor_source *source) {
     const int has_legs = at->flow->kernel->has_legs;
@@ -49,7 +50,7 @@ static void sensor_add(const struct sensor_targets *at, const struct kernel_pair
     }
 }
 
-// add all images of one source; in a mirror image circulation, legs and dipole have the opposite sign
+// add all images of one source; in a mirror image circulation, leg and dipole are reversed
 static void sensor_add_images(const struct sensor_targets *at, const struct kernel_pair *pair,
                               const struct sensor_source *source) {
     for (int k = 0; k < at->flow->n_images; k++) {
@@ -68,7 +69,7 @@ static void sensor_add_images(const struct sensor_targets *at, const struct kern
 
 // ---- sources
 
-// rate of the circulation between the nose and control point c of any fish
+// the rate of the circulation between the nose and control point c, for any fish
 static double sensor_rate_before(const struct fish *fish, int c, const double *yp) {
     double sum = 0;
     for (int j = 0; j < fish->n_sheet; j++) {
@@ -88,14 +89,14 @@ static struct sensor_source sensor_sheet_source(const struct fish *fish, int j, 
         .velocity = {fish_mean(point, y + fish->at.vx), fish_mean(point, y + fish->at.vy)},
     };
 
-    // dipole dC/dt dx, of fourth order in the spacing of theta: dC/dt and the displacement of the body per interval,
-    // from the control points on both sides
+    // The dipole dC/dt dx to fourth order in the spacing of theta: dC/dt, and the displacement of the body per
+    // interval, come from the control points on both sides.
     static const double mean[4] = {-1.0 / 16, 9.0 / 16, 9.0 / 16, -1.0 / 16};
     static const double difference[4] = {1.0 / 24, -27.0 / 24, 27.0 / 24, -1.0 / 24};
     double total = 0, rate = 0, line[2] = {0, 0};
     for (int i = 0; i < fish->n_sheet; i++) total += fish->sheet_weight[i] * yp[fish->at.gamma + i];
     for (int i = 0; i < 4; i++) {
-        // beyond the ends positions are even, circulations odd in theta about both ends
+        // beyond the ends, continue positions evenly and circulations oddly in theta
         const int c = j - 2 + i, n = fish->n_control, inside = c < 0 ? -1 - c : c >= n ? 2 * n - 1 - c : c;
         const double rate_inside = sensor_rate_before(fish, inside, yp);
         rate += mean[i] * (c < 0 ? -rate_inside : c >= n ? 2 * total - rate_inside : rate_inside);
@@ -108,7 +109,7 @@ static struct sensor_source sensor_sheet_source(const struct fish *fish, int j, 
     return source;
 }
 
-// control point c of a body: the legs, and for other fish circulation and dipole
+// control point c of a body as a source: its leg, and for other fish also its circulation and its dipole
 static struct sensor_source sensor_control_source(const struct sensor_targets *at, int g, int c, bool is_own) {
     const struct fish *const fish = &at->flow->school->fish[g];
     const struct sources *const body = &at->flow->fish[g].body;
@@ -124,7 +125,7 @@ static struct sensor_source sensor_control_source(const struct sensor_targets *a
     return source;
 }
 
-// released source i of a view of a wake, with the rate of the label as a dipole
+// released source i of a view of a wake, whose label changes at a rate and therefore makes a dipole
 static struct sensor_source sensor_wake_source(const struct sensor_targets *at, int g,
                                                const struct sheet_points *points, int i) {
     const struct wake *const wake = &at->state->wake[g];
@@ -148,7 +149,6 @@ static struct sensor_source sensor_wake_source(const struct sensor_targets *at, 
         .dipole = {rate * line[0], rate * line[1]}};
 }
 
-// add body and wake of fish g at the control points of fish f
 static void sensor_add_fish(const struct sensor_targets *at, int f, int g) {
     const struct fish *const fish = &at->flow->school->fish[g];
     const struct flow_sum from_body = {BODY_AT_BODY, false}, from_wake = {WAKE_AT_BODY, false};
@@ -158,7 +158,7 @@ static void sensor_add_fish(const struct sensor_targets *at, int f, int g) {
     const struct sheet *const sheet = &at->flow->fish[g].wake;
     const int n_body = at->flow->fish[g].body.n;
 
-    // own bound vortices and legs
+    // its own bound vortices and legs
     for (int j = 0; g == f && j < fish->n_sheet; j++) {
         const struct sensor_source source = sensor_sheet_source(fish, j, at->state->y, at->state->yp);
         sensor_add(at, &own, &source);
@@ -176,7 +176,7 @@ static void sensor_add_fish(const struct sensor_targets *at, int f, int g) {
         sensor_add_images(at, &body, &seen);
     }
 
-    // own wake, then other wakes and all images
+    // its own wake, then the wakes of others and all images
     for (int i = 0; g == f && i < sheet->graded.n_released; i++) {
         const struct sensor_source source = sensor_wake_source(at, g, &sheet->graded, i);
         sensor_add(at, &own, &source);
@@ -213,12 +213,11 @@ void sensor_pressure_update(const struct flow *flow, const struct state *state, 
                                       .pressure = pressure};
     if (fish->n_sensors == 0) return;
 
-    // rate of the potential
     for (int c = 0; c < fish->n_control; c++) pressure->point[c].potential_rate = 0;
     for (int g = 0; g < school->n_fish; g++) sensor_add_fish(&at, f, g);
 
     for (int i = 0; i < fish->n_sensors; i++) {
-        // interpolate values that are smooth in theta up to the nose
+        // interpolate only values that are smooth in theta up to the nose
         double weight[4], mean = 0, jump = 0, slip = 0, strength = 0;
         const int first = sensor_weights(fish, fish->sensor[i], weight);
         for (int k = 0; k < 4; k++) {
@@ -238,7 +237,7 @@ void sensor_pressure_update(const struct flow *flow, const struct state *state, 
             strength += weight[k] * (factor * sheet.strength * sqrt(fish_mean(&fish->control_point[c], fish->arc)));
         }
 
-        // velocity at the surface of a round nose; the side of the normal is the right side of the fish
+        // the velocity at the surface of a round nose; the normal points to the right side of the fish
         const double s = fish->sensor[i] * fish->length, below = sqrt(s + fish->nose_radius / 2);
         for (int side = 0; side < 2; side++) {
             const double sign = side == 0 ? -1 : 1, speed = (slip * sqrt(s) - sign * strength / 2) / below;

@@ -1,5 +1,5 @@
-/* thwaites.c: Thwaites' integral along a wall, and the wall of a body: from the tail along the left side to the nose
- * and along the right side to the tail. */
+/* thwaites.c: Thwaites' integral along a wall, and the wall of a body, which leads from the tail along the left side to
+ * the nose and along the right side back to the tail. */
 #include "force/thwaites.h"
 
 #include <math.h>
@@ -17,19 +17,19 @@ void thwaites_layers(int n, const double *x, const double *u, double viscosity, 
     memset(friction, 0, (size_t)n * sizeof *friction);
     memset(lambda, 0, (size_t)n * sizeof *lambda);
 
-    // layers of the flow towards larger x, then towards smaller x
+    // first the layers of the flow towards larger x, then those towards smaller x
     for (int direction = 1; direction >= -1; direction -= 2) {
         double integral = 0;
         for (int k = 0; k < n; k++) {
             const int i = direction > 0 ? k : n - 1 - k, before = i - direction;
             const double b = direction * u[i];
-            // below this speed the sixth power underflows
+            // at lower speeds the sixth power underflows
             if (!(b > 1e-40)) {
                 integral = 0;
                 continue;
             }
 
-            // add the integral of u^5, with u linear in x; from the zero if the sign changes
+            // add the integral of u^5 with u linear in x; if the sign of u changes, from the zero on
             if (k > 0) {
                 double a = direction * u[before], distance = fabs(x[i] - x[before]);
                 if (a < 0) {
@@ -41,7 +41,7 @@ void thwaites_layers(int n, const double *x, const double *u, double viscosity, 
                              a * b * b * b * b + b * b * b * b * b);
             }
 
-            // theta^2 = 0.45 nu/u^6 int u^5 ds; at an end a layer begins with thickness 0
+            // theta^2 = 0.45 nu/u^6 int u^5 ds; at an end a layer begins with no thickness
             const int low = i > 0 ? i - 1 : 0, high = i < n - 1 ? i + 1 : i;
             const double slope = (u[high] - u[low]) / (x[high] - x[low]);
             const double square = 0.45 * viscosity * integral / pow(b, 6);
@@ -54,17 +54,17 @@ void thwaites_layers(int n, const double *x, const double *u, double viscosity, 
 
 // ---- the wall of a body
 
-/* Points from the tail along the left side of the fish, eta = -sqrt(s), to the nose and along the right side, the side
- * of the normal, eta = sqrt(s). */
+/* Points from the tail along the left side of the fish, where eta = -sqrt(s), to the nose and along the right side,
+ * where eta = sqrt(s). The normal points to the right side. */
 enum { PER_INTERVAL = 4, N_ARRAYS = 6 };
 struct wall {
     int n;                                         /* odd: the nose is in the middle */
-    double *s, *x, *u, *friction, *lambda, *sheet; /* sheet: slip and gamma sqrt(s) of control points */
+    double *s, *x, *u, *friction, *lambda, *sheet; /* sheet: slip, and gamma sqrt(s), of the control points */
 };
 
-/* At the distance s from the nose the flow relative to the body is w_t -+ gamma/2, times 1 + h/L for the thickness and
- * sqrt(s/(s + r/2)) round the nose. An element of the wall has the length sqrt((s + r/2)/s) ds. Positive velocities are
- * towards larger eta. */
+/* At the distance s from the nose the flow relative to the body is w_t -+ gamma/2. It is multiplied by 1 + h/L for the
+ * thickness and by sqrt(s/(s + r/2)) for the round nose. An element of the wall has the length sqrt((s + r/2)/s) ds.
+ * Velocities are positive towards larger eta. */
 static void wall_fill(const struct wall *wall, const struct pressure *pressure, const double *y, const double *yp) {
     const struct fish *const fish = pressure->fish;
     const int half = wall->n / 2;
@@ -78,7 +78,7 @@ static void wall_fill(const struct wall *wall, const struct pressure *pressure, 
     }
 
     for (int i = 0; i < wall->n; i++) {
-        // points crowd at the nose, where the velocity changes over the root of r/2
+        // points crowd at the nose, where the velocity changes over a distance of the root of r/2
         const double part = (double)(i - half) / half, share = sin(M_PI / 2 * part * fabs(part));
         const double eta = sqrt(fish->length) * share;
         double weight[4], w = 0, g = 0;
@@ -107,7 +107,7 @@ struct thwaites_friction thwaites_friction(struct pressure *pressure, const doub
     wall_fill(&wall, pressure, y, yp);
     thwaites_layers(wall.n, wall.x, wall.u, fish->viscosity, wall.friction, wall.lambda);
 
-    // friction on the body: -tau ds t on the left, tau ds t on the right, with the depth of the edge
+    // friction pulls the body by -tau ds t on the left and by tau ds t on the right, over the depth of the edge
     const int half = wall.n / 2;
     for (int i = 0; i < wall.n; i++) {
         const int side = i > half, direction = side ? 1 : -1;
@@ -125,7 +125,7 @@ struct thwaites_friction thwaites_friction(struct pressure *pressure, const doub
         }
     }
 
-    // separation: the first point at which a layer towards the tail reaches lambda = -0.09 or meets a reversed flow
+    // a layer towards the tail separates where lambda first reaches -0.09, or where it meets a reversed flow
     for (int side = 0; side < 2; side++) {
         const int direction = side == 0 ? -1 : 1;
         bool has_layer = false;

@@ -1,4 +1,5 @@
-/* residual.c: the equations in the order of doc/model.md, section 10; derivatives: residual_jacobian.c. */
+/* residual.c: evaluates the equations, in the order of doc/model.md, section 10. Their derivatives are in
+ * residual_jacobian.c. */
 #include "school/residual.h"
 
 #include <math.h>
@@ -16,7 +17,7 @@
 // ---- unknowns by slices of the layout
 
 struct unknown_place residual_place(const struct school *school, int i) {
-    // bisection: the first fish with at.end above i
+    // by bisection, the first fish with at.end above i
     int f = 0, last = school->n_fish - 1;
     while (f < last) {
         const int middle = (f + last) / 2;
@@ -27,7 +28,7 @@ struct unknown_place residual_place(const struct school *school, int i) {
         }
     }
 
-    // the slice that contains i, from the last slice to the first
+    // the slice that contains i, searched from the last one to the first
     const struct layout *at = &school->fish[f].at;
     const struct {
         int first;
@@ -84,7 +85,7 @@ double residual_undamped(const struct school *school, int i) {
 
 const struct residual_mode residual_run = {.shed = SHED_BY_LAW};
 
-// ---- neighbours by boxes, then by the distance of outlines
+// ---- neighbours, first by boxes and then by the distance of outlines
 
 void residual_couple(struct residual_couplings *couplings, const double *y) {
     const struct school *school = couplings->school;
@@ -94,7 +95,7 @@ void residual_couple(struct residual_couplings *couplings, const double *y) {
 
     neighbours_find(couplings->neighbours);
 
-    // couple exactly the fish within the reach
+    // of the fish whose boxes overlap, couple exactly those within the reach
     const struct neighbours *const neighbours = couplings->neighbours;
     bool has_changed = false;
     for (int f = 0; f < school->n_fish; f++) {
@@ -104,7 +105,7 @@ void residual_couple(struct residual_couplings *couplings, const double *y) {
             const bool overlaps = i < neighbours->first[f + 1] && neighbours->other[i] == g;
             i += overlaps;
 
-            // ordered pair: the same bits for (f, g) and (g, f)
+            // always in the same order, so that (f, g) and (g, f) have the same bits
             const struct fish *const a = &school->fish[f > g ? f : g], *const b = &school->fish[f > g ? g : f];
             const bool couple = f == g || (overlaps && fish_distance(a, b, y, couplings->reach) <= couplings->reach);
             has_changed |= before[g] != couple;
@@ -119,7 +120,7 @@ int residual_couple_more(struct residual_couplings *couplings, const double *y) 
     const double max_values = 5e7, before = couplings->reach;
     const unsigned pattern = couplings->pattern;
 
-    // upper bound of all distances between bodies
+    // no two bodies are farther apart than this
     struct box all = clearance_box(&school->fish[0], 0, y, y);
     for (int f = 1; f < school->n_fish; f++) all = box_union(all, clearance_box(&school->fish[f], 0, y, y));
     const double extent = hypot(all.high[0] - all.low[0], all.high[1] - all.low[1]);
@@ -128,7 +129,7 @@ int residual_couple_more(struct residual_couplings *couplings, const double *y) 
         couplings->reach = fmax(2 * couplings->reach, 0.5 * school->fish[0].length);
         residual_couple(couplings, y);
 
-        // number of values in the blocks of all coupled pairs
+        // how many values the blocks of all coupled pairs have
         double n = 0;
         for (int f = 0; f < school->n_fish; f++) {
             const unsigned char *const coupled = couplings->coupled + (size_t)f * (size_t)school->n_fish;
@@ -138,7 +139,7 @@ int residual_couple_more(struct residual_couplings *couplings, const double *y) 
         }
         if (n <= max_values) continue;
 
-        // back to the reach before
+        // too many: return to the reach before
         couplings->reach = before;
         couplings->couples_most = 1;
         residual_couple(couplings, y);
@@ -156,7 +157,6 @@ struct residual *residual_create(struct arena *arena, const struct school *schoo
     NEW(arena, created->force, school->n_fish);
     NEW(arena, created->scratch, school->n_unknowns);
 
-    // find the sizes of all fish
     int n_joints = 0, most_points = 0, most_columns = 0, most_rows = 0, has_edges = 0;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
@@ -170,7 +170,6 @@ struct residual *residual_create(struct arena *arena, const struct school *schoo
         has_edges |= fish->depth_varies;
     }
 
-    // the actuation of all joints
     NEW(arena, created->muscle.curvature, n_joints);
     NEW(arena, created->muscle.rate, n_joints);
     NEW(arena, created->muscle.curvature_by_phi0, n_joints);
@@ -178,7 +177,7 @@ struct residual *residual_create(struct arena *arena, const struct school *schoo
 
     created->flow = flow_create(arena, school);
 
-    // for every thread a block that fits any pair of fish
+    // each thread has a block that fits any pair of fish
     NEW(arena, created->jacobian_scratch, school->threads);
     for (int i = 0; i < school->threads; i++) {
         struct jacobian_scratch *const scratch = &created->jacobian_scratch[i];
@@ -191,7 +190,7 @@ struct residual *residual_create(struct arena *arena, const struct school *schoo
         NEW(arena, scratch->by_phi0_rate, most_rows);
     }
 
-    // the partners of each fish: by contact, and by couplings in the Jacobian
+    // the partners of each fish, by contact and by couplings in the Jacobian
     created->neighbours = neighbours_create(arena, school->n_fish);
     created->couplings = (struct residual_couplings){
         .school = school, .neighbours = created->neighbours, .reach = school->coupling_distance};
@@ -248,14 +247,14 @@ void residual_actuate(struct residual *residual, int f, double t, const double *
     actuation_find(fish, control_gait(fish, &state->control[f], t), y[fish->at.phi0], phi0_rate, &muscle);
 }
 
-// update the force of the fluid on fish f; yp: NULL without the rates
+// bring the force of the fluid on fish f up to date; yp: NULL without the rates
 static void update_force(const struct residual *residual, int f, const double *y, const double *yp) {
     const struct fluid_force *const force = &residual->force[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     if (force->model->update) force->model->update(force, &flow, y, yp);
 }
 
-// residual_forces with the force of the fluid up to date
+// residual_forces, if the force of the fluid is up to date
 static void forces_on_nodes(const struct residual *residual, int f, const double *y, double *value) {
     const struct fish *fish = &residual->school->fish[f];
     const struct fluid_force *const force = &residual->force[f];
@@ -288,7 +287,6 @@ void residual_balance(const struct residual *residual, int f, const double *y, d
     residual_forces(residual, f, y, value);
 }
 
-// the equations of fish f
 static void evaluate_fish(struct residual *residual, const struct residual_mode *mode, int f, double t, const double *y,
                           const double *yp, double *value) {
     const struct school *school = residual->school;
@@ -319,7 +317,8 @@ static void evaluate_fish(struct residual *residual, const struct residual_mode 
         value[fish->at.ay + k] /= fish->mass[k];
     }
 
-    // of prescribed nodes position, velocity and acceleration are given, and the law of motion yields the reaction
+    // where nodes are prescribed, position, velocity and acceleration are given, and the law of motion yields the
+    // reaction
     for (int k = 0; k < fish_n_prescribed(fish); k++) {
         double position[2], velocity[2], acceleration[2];
         fish_prescribed_node(fish, k, t, position, velocity, acceleration);
@@ -353,7 +352,7 @@ enum status residual_evaluate(struct residual *residual, const struct residual_m
         for (int f = 0; f < school->n_fish; f++) evaluate_fish(residual, mode, f, t, y, yp, value);
     }
 
-    // name the first equation without a finite value
+    // if there is one, name the first equation without a finite value
     int i = 0;
     while (i < school->n_unknowns && isfinite(value[i])) i++;
     if (i == school->n_unknowns) return STATUS_OK;
@@ -373,7 +372,7 @@ bool residual_is_differential(const struct school *school, const struct residual
     const struct fish *fish = &school->fish[place.fish];
     const bool is_given = fish_is_prescribed(fish, place.index, place.component);
 
-    // of a free node positions and velocities, or positions and momenta, are differential
+    // of a free node, positions are differential, and so are either its velocities or its momenta
     switch (place.kind) {
         case UNKNOWN_X:
         case UNKNOWN_Y: return !is_given;

@@ -1,4 +1,4 @@
-/* residual_jacobian.c: the derivatives in the order of residual.c. */
+/* residual_jacobian.c: the derivatives, in the same order as the equations in residual.c. */
 #include <omp.h>
 #include <string.h>
 
@@ -9,7 +9,7 @@
 #include "force/bound_sheet.h"
 #include "school/residual.h"
 
-// derivatives of the equations of fish f by the unknowns of fish g through the flow velocity
+// how the equations of fish f depend on the unknowns of fish g through the velocity of the fluid
 static void flow_jacobian(const struct residual *residual, const struct residual_mode *mode, int f, int g,
                           const double *y, struct influence_block *block, struct coupling_block *rows) {
     const struct fish *fish = &residual->school->fish[f];
@@ -32,10 +32,10 @@ static void flow_jacobian(const struct residual *residual, const struct residual
     }
 }
 
-// add the rows of a fish to its diagonal block: only entries that may differ from zero. The flow velocity at the
-// midpoint of an edge depends on the nodes of the edge and, with its wake, on the tail node and the circulation
-// shed through the nascent vortex; the flux at the tail depends on the nodes of the last two edges; where the sheet
-// loads the body, or with images in walls, every row depends on every column.
+// Add the rows of a fish to its diagonal block, but only entries that may differ from zero. At the midpoint of an edge,
+// the velocity of the fluid depends on the nodes of the edge and, if the fish feels its own wake, on the tail node and,
+// through the nascent vortex, on the circulation shed. The flux at the tail depends on the nodes of the last two edges.
+// Where the sheet loads the body, or with images in walls, every row depends on every column.
 static void add_own_rows(const struct residual *residual, const struct residual_mode *mode, const struct fish *fish,
                          const struct coupling_block *rows, struct sparse *own) {
     const int n_nodes = fish->n_nodes, n_places = 2 * n_nodes;
@@ -71,7 +71,7 @@ static void fish_jacobian(struct residual *residual, const struct residual_mode 
     const double *const u = residual->flow->u + residual->flow->points[f].first;
     const double *const v = residual->flow->v + residual->flow->points[f].first;
 
-    // own block: direct dependence on the unknowns
+    // what depends on the unknowns of the fish directly
     sparse_begin(own);
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     if (force->model->update) force->model->update(force, &flow, y, NULL);
@@ -97,14 +97,14 @@ static void fish_jacobian(struct residual *residual, const struct residual_mode 
     bound_sheet_kutta_jacobian(fish, residual_sheet_law(residual, mode), cj, u, v, y, own);
     control_jacobian(fish, memory, t, since, y, own);
 
-    // dependence through the flow velocity: on the unknowns of this fish, then on the unknowns of coupled fish
+    // what depends on unknowns through the velocity of the fluid: first those of this fish, then those of coupled fish
     flow_jacobian(residual, mode, f, f, y, &jacobian_scratch->block, &jacobian_scratch->rows);
     add_own_rows(residual, mode, fish, &jacobian_scratch->rows, own);
     for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
         struct jacobian_coupling *const coupling = &jacobian->coupling[i];
         flow_jacobian(residual, mode, f, coupling->other, y, &jacobian_scratch->block, &coupling->rows);
 
-        // masked rows
+        // prescribed rows have no entries
         const struct coupling_block *const rows = &coupling->rows;
         for (int row = fish->at.ax; row < fish->at.phi0; row++) {
             if (!sparse_is_masked(own, row)) continue;
@@ -120,7 +120,6 @@ enum status residual_jacobian(struct residual *residual, const struct residual_m
     struct residual_couplings *const couplings = &residual->couplings;
     int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_MATRICES);
 
-    // couple the fish in contact
     TRY(contact_find(residual->contact, residual->state, t, y));
     jacobian->has_contacts = false;
     for (int f = 0; f < school->n_fish; f++) {
@@ -138,7 +137,7 @@ enum status residual_jacobian(struct residual *residual, const struct residual_m
     flow_gradient(residual->flow, residual->state, t, y, mode->shed == SHED_IS_FAR);
     if (jacobian->pattern != couplings->pattern) jacobian_couple(jacobian, couplings->coupled, couplings->pattern);
 
-    // a recording requests memory, which no parallel region may
+    // recording a new pattern requests memory, which no parallel region may do
     for (int f = 0; f < school->n_fish; f++) {
         if (jacobian->own[f]->recording) threads = 1;
     }
