@@ -174,16 +174,21 @@ static void induce_own(const struct flow *flow, const struct chunk *chunk, const
     kernel_induce(&bound, &of->own, (struct range){0, fish->n_sheet}, &at);
 }
 
-// the near part of fish g, at points of fish f
-static void induce_near(const struct flow *flow, int f, int g, const struct targets *at) {
-    const struct others_near near = others_near(flow, f, g);
-    const struct sheet_points *const middles = &flow->fish[g].wake.middles;
-    if (near.body.n == 0 && near.n_wake == 0) return;
-    const struct kernel_pair body = flow_pair_of(flow, f, g, &(struct flow_sum){BODY_AT_BODY, false});
-    const struct kernel_pair wake = flow_pair_of(flow, f, g, &(struct flow_sum){WAKE_AT_BODY, false});
-    kernel_induce(&body, &flow->fish[g].body, near.body, at);
-    for (int i = 0; i < near.n_wake; i++) kernel_induce(&wake, &middles->sources, near.wake[i], at);
-    if (near.body.n > 0) kernel_induce(&wake, &middles->sources, (struct range){middles->n_released, 1}, at);
+// the near sources of other fish at points of fish f
+static void induce_near(const struct flow *flow, int f, const struct targets *at) {
+    int n_near;
+    const struct near_sources *const near = others_near(flow, f, &n_near);
+    for (int i = 0; i < n_near; i++) {
+        const int g = near[i].fish;
+        if (g == f) continue;
+        const struct kernel_pair wake = flow_pair_of(flow, f, g, &(struct flow_sum){WAKE_AT_BODY, false});
+        const struct sheet_points *const middles = &flow->fish[g].wake.middles;
+        kernel_induce(&wake, &middles->sources, near[i].wake, at);
+        if (!near[i].with_body) continue;
+        const struct kernel_pair body = flow_pair_of(flow, f, g, &(struct flow_sum){BODY_AT_BODY, false});
+        kernel_induce(&body, &flow->fish[g].body, (struct range){0, flow->fish[g].body.n}, at);
+        kernel_induce(&wake, &middles->sources, (struct range){middles->n_released, 1}, at);
+    }
 }
 
 static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, bool with_gradient) {
@@ -204,13 +209,16 @@ static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, b
     }
 
     induce_own(flow, chunk, &all, with_gradient);
-    const bool by_far_points = others_are_selected(flow);
-    if (by_far_points) others_add(flow, chunk->fish, chunk->at, &at);
-    const bool is_every = !by_far_points || school->walls.n > 0;
     const int f = chunk->fish;
-    for (int g = others_next(flow, f, -1, is_every); g < school->n_fish; g = others_next(flow, f, g, is_every)) {
-        if (by_far_points && g != f) induce_near(flow, f, g, &at);
-        for (int i = by_far_points ? 2 : 0; i < (school->walls.n > 0 ? 4 : 2); i++) {
+    const bool by_far_points = others_are_selected(flow);
+    if (by_far_points) {
+        others_add(flow, f, chunk->at, &at);
+        induce_near(flow, f, &at);
+    }
+    // the pairs of kinds that remain: of bodies and wakes, then of their images
+    const int first = by_far_points ? 2 : 0, end = school->walls.n > 0 ? 4 : 2;
+    for (int g = 0; g < school->n_fish && first < end; g++) {
+        for (int i = first; i < end; i++) {
             const struct flow_sum sum = {i % 2 == 0 ? BODY_AT_BODY : WAKE_AT_BODY, i >= 2};
             flow_induce_other(flow, f, g, &sum, g == f && !sum.of_images, &at);
         }
@@ -228,6 +236,7 @@ static void flow_sum(struct flow *flow, const struct state *state, double t, con
         n_sources += flow->fish[f].body.n + flow->fish[f].wake.middles.sources.n;
     const double work = flow->kernel->cost * (1.0 + flow->n_images) * flow->n_points * n_sources;
     const int threads = parallel_threads(flow->school->threads, flow->n_chunks, work, PARALLEL_INTERACTIONS);
+    others_place(flow, state, y, threads);
 
     // sum bodies and wakes by the tree, then by far points, then one by one
     const size_t size = (size_t)flow->n_points * sizeof(double);
@@ -256,7 +265,7 @@ static void flow_sum(struct flow *flow, const struct state *state, double t, con
             }
         }
     }
-    if (others_are_selected(flow)) others_sum(flow, state, y, threads);
+    if (others_are_selected(flow)) others_sum(flow, state, threads);
 
     if (threads == 1) {
         for (int c = 0; c < flow->n_chunks; c++) evaluate_chunk(flow, &flow->chunk[c], with_gradient);

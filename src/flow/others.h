@@ -1,19 +1,17 @@
-/* others.h: the velocity that distant wakes and bodies of other fish induce at the points of a body, by few far points.
- * doc/numerics.md, section 12. Tested by tests/flow/test_others.c.
+/* others.h: the velocity that distant wakes and bodies of other fish induce at the points of a body. doc/numerics.md,
+ * section 12. Tested by tests/flow/test_others.c.
+ *
+ * A velocity that comes from afar is smooth along a body, so it is enough to know it at a few far points:
  *
  *     far points     Chebyshev points along the body; polynomials carry velocity, divergence and the gradients of both
  *                    from the far points to the points of the body
- *     far wakes      summed at the start, in the middle and at the end of an interval, at far points that move with the
- *                    velocity of the last event; in between a parabola in time, and the gradient times the displacement
- *     far bodies     summed at every evaluation, with the nascent point of the wake; distant ones from their own far
- *                    points, whose strengths have the moments of the body along its curve; of many fish by the tree,
- *                    less the bodies that are not distant
+ *     far wakes      are summed three times for an interval, at its start, middle and end, at far points that move with
+ *                    the velocity and the acceleration of the last event; a parabola in time gives the rest
+ *     far bodies     act at every evaluation, from their own far points, whose strengths have the moments of the body
  *     near sources   are left to the sum of flow_at_bodies.c
- *     reach          of a body: distance beyond which the strongest source of the school is far, and the largest body
- *                    distant; pairs of fish beyond it need no test of their sources, and no loop visits them
  *
- * Which sources are far is decided at each event, from the state alone: the bits do not depend on threads or on a
- * resumed run. Images, and the body and wake of the same fish, are never far. */
+ * Each event decides from the state alone which sources are near, so the bits depend neither on threads nor on a
+ * resumed run. Images, and the body and the wake of the same fish, are never far. */
 #ifndef OTHERS_H
 #define OTHERS_H
 
@@ -30,29 +28,32 @@ struct targets;
 /* Far points for all fish of the flow. */
 struct others *others_create(struct arena *arena, const struct flow *flow);
 
-/* Before a sum: if the last event or a wake has changed, select the far sources and sum the far wakes; places the flow
- * at the event. Without wake.tolerance, with a steady wake, or before the start no source is far. */
+/* Before a sum: if the last event or a wake has changed, find the near sources and sum the far wakes; this places the
+ * flow at the event. */
 void others_select(struct flow *flow, const struct state *state);
 
-/* Whether sums over other fish are by this file: never by the tree. */
+/* Set the far points to the unknowns y, after flow_place. */
+void others_place(struct flow *flow, const struct state *state, const double *y, int threads);
+
+/* Whether the sums over other fish are by this file. They are not without wake.tolerance, with a steady wake, before
+ * the start, for few vortices, or when a body has left the path that the last event predicts for it. */
 bool others_are_selected(const struct flow *flow);
 
-/* Set the far points to the unknowns y, and sum all far sources there; after flow_place. */
-void others_sum(struct flow *flow, const struct state *state, const double *y, int threads);
+/* Sum all far sources at the far points, after others_place. */
+void others_sum(struct flow *flow, const struct state *state, int threads);
 
 /* Add the far sources at a range of the points of fish f; at: the targets of this range. */
 void others_add(const struct flow *flow, int f, struct range which, const struct targets *at);
 
-/* The next fish after g, or the first one (g: -1), of which some source is near or the body does not act from few
- * points, or which is fish f; n_fish after the last one. Every fish, if is_every or if one has drifted. */
-int others_next(const struct flow *flow, int f, int g, bool is_every);
-
-/* The near sources of fish g at fish f: of the body, and with the body the nascent point; of the released wake. */
-struct others_near {
-    struct range body;
-    const struct range *wake;
-    int n_wake;
+/* Sources of one fish that are near another one: a range of its released wake, which may be empty, and possibly its
+ * body with the nascent point of its wake. */
+struct near_sources {
+    int fish;
+    struct range wake;
+    bool with_body;
 };
-struct others_near others_near(const struct flow *flow, int f, int g);
+
+/* The near sources of fish f in the order of the fish, *n of them; the own body and wake are among them. */
+const struct near_sources *others_near(const struct flow *flow, int f, int *n);
 
 #endif
