@@ -1,5 +1,5 @@
-/* kernel.c: finite span takes one root and one division per pair, in mutual sums for both directions; infinite span one
- * division for two pairs. */
+/* kernel.c: the two kernels. With finite span a pair takes one root and one division, which in mutual sums serve both
+ * directions; with infinite span two pairs share a division. */
 #include "flow/kernel.h"
 
 #include <math.h>
@@ -15,7 +15,8 @@
 
 static const double inverse_two_pi = 0.159154943091895335769;
 
-/* Avoids 0/0 in the spanwise part of a source at a target, and changes no bit at relevant distances. */
+/* Avoids 0/0 in the spanwise part of a source at a target. It is so small that it changes no bit at distances that
+ * matter. */
 static const double no_square = 1e-150;
 
 enum { HALF = KERNEL_BLOCK / 2 };
@@ -143,7 +144,7 @@ static void fill_block(struct kernel_block *block, const struct kernel_pair *pai
     block->n = n;
     block->has_squares = at->square != NULL;
     for (int i = 0; i < KERNEL_BLOCK; i++) {
-        // the padding has another position than the last target, so that no two targets of a division are at one source
+        // pad with a place beside the last target, so that no two targets of one division are at the same source
         const int p = first + (i < n ? i : n - 1);
         block->x[i] = at->x[p] + (i < n ? 0 : 1);
         block->y[i] = at->y[p];
@@ -170,7 +171,7 @@ static void add_block(const struct kernel_block *block, const struct kernel_pair
     }
     if (!pair->kernel->has_legs) return;
 
-    // the loops sum a third of the divergence
+    // the loops sum only a third of the divergence
     add_sum(n, 1, block->leg_u, at.u);
     add_sum(n, 1, block->leg_v, at.v);
     add_sum(n, 1, block->leg_u, at.leg_u);
@@ -218,7 +219,7 @@ void kernel_induce(const struct kernel_pair *pair, const struct sources *sources
     }
 }
 
-// sums of a tile of sources: five of HALF numbers for each fit in the first cache
+// So many sources form a tile: their sums, five times HALF numbers for each, fit into the first cache.
 enum { TILE = 2 * KERNEL_BLOCK };
 
 static double sum_of_lanes(const double *value) {
@@ -240,7 +241,7 @@ void kernel_induce_mutual(const struct kernel_pair *pair, const struct sources *
         struct block_lanes sums[TILE];
         memset(sums, 0, sizeof sums);
 
-        // the tile and the whole other set, or all sources before; the padding of a block has no strength
+        // the tile and the whole other set, or all sources before the tile; the padding of a block has no strength
         const int end = other == one ? first : one->n;
         for (int before = 0; before < end; before += KERNEL_BLOCK) {
             struct kernel_block block;
@@ -266,7 +267,7 @@ void kernel_induce_mutual(const struct kernel_pair *pair, const struct sources *
             if (at->div) at->div[first + i] -= 3 * sum_of_lanes(sums[i].div);
         }
 
-        // the sources of the tile at each other
+        // the sources of the tile on each other
         const struct targets own = kernel_targets_part(at, tile);
         if (other == one) kernel_induce(pair, one, tile, &own);
     }

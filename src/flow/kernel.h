@@ -1,6 +1,6 @@
-/* kernel.h: the velocity of sources at targets: of point vortices (infinite span), and of the vortex rings of a strip
- * of finite depth in the middle plane of the strip, with the divergence of this velocity. doc/model.md, first
- * paragraph and section 18. Tested by tests/flow/test_kernel.c.
+/* kernel.h: the formulas for the velocity that sources induce at targets. A source is a point vortex (infinite span),
+ * or a vortex ring of a strip of finite depth, whose velocity and divergence are those in the middle plane of the
+ * strip. doc/model.md, first paragraph and section 18. Tested by tests/flow/test_kernel.c.
  *
  * A source has a spanwise part of circulation q and two legs along the line d = C dx. With r from the source to the
  * target, B = (b_t^2 + b_n^2)/2 of the half spans, s of the legs and e the smoothing of the spanwise part:
@@ -12,12 +12,12 @@
  *
  *     infinite span:   u = q E3 r/(2 pi R)
  *
- * The `half` of a position is b^2/2; for targets outside the strip b is twice as large, and `half` four times as large.
+ * The `half` of a position is b^2/2. For targets outside the strip b is twice as large, and `half` four times as large.
  *
- * The sum at a target runs over the sources in array order, and every operation is rounded as written, with explicit
- * fused products on x86-64 with AVX2 and on arm64: the same bits on all processors of a family, for any vector width.
- * Targets are processed in blocks of 16. With infinite span targets i and i + 8 of a block share a division: the last
- * bits of one target depend on the other target. */
+ * The sum at a target runs over the sources in array order. Every operation is rounded as written, with explicit fused
+ * products on x86-64 with AVX2 and on arm64, so all processors of a family give the same bits, whatever their vector
+ * width. Targets are processed in blocks of 16. With infinite span the targets i and i + 8 of a block share a division,
+ * so the last bits of one depend on the other. */
 #ifndef KERNEL_H
 #define KERNEL_H
 
@@ -26,15 +26,15 @@
 #include "base/parallel.h"
 #include "wake/sources.h"
 
-/* Targets; all arrays (n). Values are added to arrays that are not NULL: u and v, or neither and then `edge` alone; of
- * the gradient either no array, or u_x, u_y, v_x and any others. v_y = div - u_x. Without legs the arrays of legs, div
- * and edge are unchanged. */
+/* Targets; all arrays (n). Values are added to those arrays that are not NULL. These are u and v, or neither and then
+ * `edge` alone; of the gradient either none, or u_x, u_y, v_x and any others (v_y = div - u_x). Without legs the arrays
+ * of legs, div and edge stay as they are. */
 struct targets {
     int n;
     const double *x, *y;               /* m */
     const double *half, *leg, *square; /* as of sources; NULL: 0 */
     double *u, *v;                     /* m s-1 */
-    double *leg_u, *leg_v;             /* the part of the legs, m s-1 */
+    double *leg_u, *leg_v;             /* what the legs contribute, m s-1 */
     double *div;                       /* s-1 */
     double *u_x, *u_y, *v_x;           /* s-1 */
     double *div_x, *div_y;             /* m-1 s-1 */
@@ -44,29 +44,30 @@ struct targets {
 };
 struct targets kernel_targets_part(const struct targets *all, struct range which);
 
-/* n places with the sums u, v, div, u_x, u_y, v_x, div_x, div_y, in this order; without half, leg and square. */
+/* Make targets of n places, with the sums u, v, div, u_x, u_y, v_x, div_x, div_y in this order, and without half, leg
+ * and square. */
 enum { KERNEL_SUMS = 8 };
 struct targets kernel_targets(int n, const double *x, const double *y, double *const sum[KERNEL_SUMS]);
 
-/* Constants of all pairs of a sum: span: b in front of the kernel, m (infinite span: 1); factor: of both `half`, 1 in
- * the strip of the same fish, 4 outside; square: addend of e^2, m2. */
+/* What is constant over all pairs of a sum. span: b in front of the kernel, m (infinite span: 1); factor: of both
+ * `half`, which is 1 in the strip of the same fish and 4 outside; square: addend of e^2, m2. */
 struct kernel;
 struct kernel_pair {
     const struct kernel *kernel;
     double span, factor, square;
 };
 
-/* Add the velocity of a range of sources to the targets. The spanwise part of a source at a target is 0. */
+/* Add the velocity of a range of sources to the targets. A source exactly at a target contributes no spanwise part. */
 void kernel_induce(const struct kernel_pair *pair, const struct sources *sources, struct range which,
                    const struct targets *at);
 
-/* Add the velocities that two sets of sources cause at each other, or a set at itself (other: one): kernel_induce with
- * the places, half and leg of the sources as targets, without gradients; a pair of sources has one division and one
- * root. `square` of the sources is 0. */
+/* Add the velocities that two sets of sources cause at each other, or that one set causes at itself (other: one). This
+ * equals kernel_induce with the places, half and leg of the sources as targets, without gradients, but takes only one
+ * division and one root for a pair of sources. `square` of the sources must be 0. */
 void kernel_induce_mutual(const struct kernel_pair *pair, const struct sources *one, const struct targets *at_one,
                           const struct sources *other, const struct targets *at_other);
 
-/* One source for a Jacobian at n targets of one chunk. */
+/* One source for a Jacobian, and what it causes at n targets of one chunk. */
 enum { KERNEL_CHUNK = 64 };
 struct source {
     double x, y, q, dx, dy, half, leg, square;
@@ -118,8 +119,9 @@ struct block_lanes {
     double leg_u[KERNEL_BLOCK / 2], leg_v[KERNEL_BLOCK / 2], div[KERNEL_BLOCK / 2];
 };
 
-/* The loops of kernel_induce and kernel_induce_mutual for one vector width set u, v, with legs leg_u, leg_v and a third
- * of div, and the gradients. mutual NULL: pairs are no faster (infinite span: 7 against 8 interactions per ns). */
+/* The loops of kernel_induce and kernel_induce_mutual for one vector width. They set u, v and the gradients and, with
+ * legs, leg_u, leg_v and a third of div. mutual NULL: pairs would be no faster (infinite span: 7 against 8 interactions
+ * per ns). */
 struct kernel_loops {
     void (*velocity)(struct kernel_block *at, const struct block_sources *from);
     void (*gradient)(struct kernel_block *at, const struct block_sources *from);
@@ -127,23 +129,23 @@ struct kernel_loops {
                    struct block_lanes *sums);
 };
 
-/* Another kernel is another struct of this kind; no other module knows the formulas. */
+/* A kernel; another one is another struct of this kind. No other file knows the formulas. */
 struct kernel {
-    bool has_legs; /* whether legs act; without legs: no divergence, no edge force, one strength per source */
+    bool has_legs; /* without legs there is no divergence, no edge force, and one strength per source */
     int cost;      /* of an interaction, in interactions of infinite span */
-    /* below these numbers the direct sum is faster than the tree: measured by `make bench` */
+    /* with fewer sources or interactions the direct sum is faster than the tree: measured by `make bench` */
     int tree_sources;
-    int far_sources; /* below this number of sources the direct sum is faster than far points: others.h */
+    int far_sources; /* with fewer sources the direct sum is faster than far points: others.h */
     double tree_interactions;
-    /* the pairs of sources of a strip of this depth and targets in the same strip, or other targets; square: e^2, m2 */
+    /* the constants for sources of a strip of this depth, at targets in the same strip or at others; square: e^2, m2 */
     struct kernel_pair (*own)(double depth, double square);
     struct kernel_pair (*other)(double depth, double square);
-    /* variant i of this processor, the fastest first; NULL after the last variant */
+    /* the loops for this processor, the fastest ones first; NULL after the last */
     const struct kernel_loops *(*loops)(int i);
-    /* bound of the velocity, and of length times div u, of sources with the sums q and d of the sizes of the strengths,
-     * for squares of distances of at least r2 and h = b^2/2 + s of at least low */
+    /* A bound of the velocity, and of length times div u, of sources whose strengths have sizes that sum to q and d,
+     * for squares of distances of at least r2 and h = b^2/2 + s of at least low. */
     double (*bound)(const struct kernel_pair *pair, double r2, double low, double q, double d, double length);
-    /* add the edge force to a block (NULL without legs); one source */
+    /* add the edge force to a block (NULL without legs); then one source for a Jacobian */
     void (*edge)(struct kernel_block *at, const struct block_sources *from);
     void (*unit)(const struct kernel_pair *pair, const struct source *source, int n, const double *x, const double *y,
                  const double *half, struct unit_values *values);

@@ -39,7 +39,7 @@ static inline __attribute__((always_inline)) TARGET void VARIANT(rings)(struct k
             const lanes inverse = 1 / (r * t * root), unit = inverse * t, f = from->q[n] * unit, g = inverse * r;
             u = FUSED(f, ry, u);
             v = FUSED(f, rx, v);
-            // a bound vortex has no leg
+            // a bound vortex has no leg, so skip its part
             if (!with_gradient && !(fabs(dx) + fabs(dy) > 0)) continue;
             const lanes all_dx = dx - (lanes){0}, all_dy = dy - (lanes){0}, over_t = g * root, fifth = g * over_t;
             const lanes across = rx * dy - ry * dx;
@@ -82,7 +82,8 @@ static TARGET void VARIANT(gradient)(struct kernel_block *at, const struct block
     VARIANT(rings)(at, from, true);
 }
 
-// a block of rings and later sources, each the targets of the others: the sums of a source stay one number per lane
+// A block of rings and later sources, each of which is a target of the others. The sums of a source stay one number
+// per lane until the end.
 static TARGET void VARIANT(mutual)(struct kernel_block *at, const struct block_mates *mates,
                                    const struct block_sources *from, struct block_lanes *sums) {
     const double scale = from->span * inverse_two_pi;
@@ -145,7 +146,8 @@ static TARGET void VARIANT(mutual)(struct kernel_block *at, const struct block_m
 
 // ---- infinite span
 
-// the squares of all targets are no_square, or one for each target: e^2 + r_y^2 is then one sum more
+// The squares of the targets are either all no_square, or one for each; in the first case e^2 + r_y^2 is one sum for
+// all.
 static inline __attribute__((always_inline)) TARGET void VARIANT(velocity_of_squares)(struct kernel_block *at,
                                                                                       const struct block_sources *from,
                                                                                       bool has_squares) {

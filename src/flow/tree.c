@@ -1,4 +1,4 @@
-/* tree.c: polynomials at Chebyshev nodes between distant boxes. */
+/* tree.c: distant boxes act on each other through polynomials at Chebyshev nodes. */
 #include "flow/tree.h"
 
 #include <math.h>
@@ -14,21 +14,23 @@ enum {
     NODES = 8,   /* the largest number of nodes in x and in y; rows of nodes are padded to this length */
     LENGTHS = 3, /* the largest number of nodes in h */
     ALL_NODES = NODES * NODES * LENGTHS,
-    VALUES = 3,         /* at most: q, dx, dy at the nodes of sources; u, v, div at the nodes of targets */
-    LEAF = 128,         /* the largest number of points in a leaf */
-    LEAF_GRADIENT = 32, /* of targets of gradients: far points of a few bodies, each at some distance from the next */
-    CONVERSION = 300    /* cost of a change between the nodes of a box and the nodes of a pair, in interactions */
+    VALUES = 3, /* at most: q, dx, dy at the nodes of sources; u, v, div at the nodes of targets */
+    LEAF = 128, /* the largest number of points in a leaf */
+    /* the same for targets of gradients, which are the far points of a few bodies, each at some distance from the
+     * next */
+    LEAF_GRADIENT = 32,
+    CONVERSION = 300 /* what it costs to change between the nodes of a box and those of a pair, in interactions */
 };
 
-/* The bound of one pair and axis over the tolerance. The bound assumes that all rings of a box are at the nearest place
- * with equal signs, but several pairs act on one target. With this factor the largest errors in
+/* How much of the tolerance the bound of one pair and axis may take. The bound assumes that all rings of a box are at
+ * the nearest place with equal signs, but several pairs act on one target. With this factor the largest errors in
  * tests/flow/test_tree.c, relative to tolerance max(1, A), are 0.1 for wakes and 0.9 for rings of one sign. */
 static const double bound_per_tolerance = 0.04;
 
-/* The smallest half of a box of targets of gradients, in lengths: bounds the error of a derivative. */
+/* A box of targets of gradients is at least twice this wide, in lengths, which bounds the error of a derivative. */
 static const double smallest_box = 0.02;
 
-/* The smallest box in place and h around the points; nodes per axis; largest sums of strengths. */
+/* The smallest box around the points, in place and h; its nodes per axis; the sums of the sizes of its strengths. */
 struct node_box {
     double centre[AXES], half[AXES];
     int n[AXES];
@@ -36,7 +38,7 @@ struct node_box {
     double *value; /* VALUES arrays of values at the nodes; NULL: not used */
 };
 
-/* Boxes of sources or targets with the nodes. */
+/* Boxes of sources or of targets, with their nodes. */
 struct node_tree {
     struct tree_boxes boxes;
     struct node_box *box; /* (capacity) */
@@ -45,7 +47,8 @@ struct node_tree {
     size_t value_capacity;
 };
 
-/* Boxes with the nodes of the pair on both sides; n = 0: points instead of nodes. Near: points on both sides. */
+/* Two boxes that act on each other, and the nodes of the pair in each of them; n = 0: points instead of nodes. A near
+ * pair has points on both sides. */
 struct node_pair {
     int target, source;
     int to[AXES], from[AXES];
@@ -97,8 +100,8 @@ int tree_is_faster(const struct kernel *kernel, int n_rings, double n_interactio
 
 // ---- polynomials
 
-// The polynomials that are 1 at one of n Chebyshev nodes and 0 at the others, and their derivatives (NULL: none), at t;
-// 0 beyond n: L_i(t) = (T_0(t_i) T_0(t) + 2 sum over k = 1 .. n - 1 of T_k(t_i) T_k(t))/n.
+// The polynomials that are 1 at one of n Chebyshev nodes and 0 at the others, at t, and their derivatives (NULL: none);
+// those beyond n are 0. L_i(t) = (T_0(t_i) T_0(t) + 2 sum over k = 1 .. n - 1 of T_k(t_i) T_k(t))/n.
 static void lagrange(const struct chebyshev *chebyshev, int n, double t, double value[NODES], double *slope) {
     double before = 1, term = t, slope_before = 0, slope_term = 1;
     for (int i = 0; i < NODES; i++) value[i] = chebyshev->factor[n][0][i];
@@ -115,12 +118,12 @@ static void lagrange(const struct chebyshev *chebyshev, int n, double t, double 
     }
 }
 
-// A place in a box, -1 .. 1 on every axis.
+// where a place is in a box, from -1 to 1 on every axis
 static double in_box(const struct node_box *box, int axis, double at) {
     return box->half[axis] > 0 ? (at - box->centre[axis]) / box->half[axis] : 0;
 }
 
-/* Values of the polynomials of a coarse grid of nodes at the nodes of a fine grid, per axis. */
+/* The polynomials of a coarse grid of nodes, evaluated at the nodes of a fine grid, for each axis. */
 struct node_matrix {
     int coarse[AXES], fine[AXES];
     double value[AXES][NODES][NODES]; /* fine node, coarse node */
@@ -147,7 +150,7 @@ static void matrix_fill(const struct chebyshev *chebyshev, const struct node_box
 /* A row of nodes at any address of an array of numbers. */
 typedef double row __attribute__((vector_size(NODES * sizeof(double)), aligned(sizeof(double)), may_alias));
 
-// Add strengths at the fine nodes to the coarse nodes, one axis after the other.
+// Add the strengths at the fine nodes to the coarse nodes, one axis after the other.
 static WIDE(void, add_to_coarse, (const struct node_matrix *matrix, int n_values, const double *fine, double *coarse),
             (matrix, n_values, fine, coarse)) {
     const int *const n = matrix->fine, *const m = matrix->coarse;
@@ -179,7 +182,7 @@ static WIDE(void, add_to_coarse, (const struct node_matrix *matrix, int n_values
     }
 }
 
-// Add the polynomial of the coarse nodes to the values at the fine nodes, one axis after the other.
+// Add the polynomial through the coarse nodes to the values at the fine nodes, one axis after the other.
 static WIDE(void, add_to_fine, (const struct node_matrix *matrix, int n_values, const double *coarse, double *fine),
             (matrix, n_values, coarse, fine)) {
     const int *const n = matrix->fine, *const m = matrix->coarse;
@@ -208,8 +211,8 @@ static WIDE(void, add_to_fine, (const struct node_matrix *matrix, int n_values, 
 
 // ---- boxes
 
-// the smallest boxes, from the leaves up, in x and y at least 2 least wide; rings: sorted, for the sums of strengths;
-// NULL: none
+// Find the smallest boxes, from the leaves up, in x and y at least twice `least` wide. rings: sorted, for the sums of
+// their strengths; NULL: none.
 static void node_tree_enclose(struct node_tree *nodes, double least, const struct sources *rings) {
     const struct tree_boxes *const boxes = &nodes->boxes;
     if (boxes->n_boxes > nodes->capacity) {
@@ -250,7 +253,7 @@ static void node_tree_enclose(struct node_tree *nodes, double least, const struc
     }
 }
 
-// raise the numbers of nodes of halves to those of the parent, and assign the values of used boxes
+// give halves at least as many nodes as the parent has, and assign memory to the boxes in use
 static void node_tree_allocate(struct node_tree *nodes) {
     size_t n_used = 0;
     for (int b = 0; b < nodes->boxes.n_boxes; b++) {
@@ -280,7 +283,7 @@ static void node_tree_allocate(struct node_tree *nodes) {
 
 // ---- pairs of boxes
 
-/* What the numbers of nodes depend on. */
+/* What decides how many nodes a pair has. */
 struct search {
     struct tree *tree;
     const struct kernel_pair *pair;
@@ -288,10 +291,10 @@ struct search {
     int cost; /* of an interaction of points: 2 with gradients */
 };
 
-// the smallest number of nodes of an interval for which rho^-n times the bound is below 1, with a singularity at the
-// distance (along, across) from the centre; 0: none
+// The smallest number of nodes of an interval for which rho^-n times the bound is below 1, if the nearest singularity
+// is at the distance (along, across) from the centre; 0: more than most.
 static int nodes_for(double half, double along, double across, double bound, int most) {
-    // rho of the ellipse of Bernstein
+    // rho of the Bernstein ellipse through the singularity
     const double near = along - half, far = along + half;
     const double sum = (sqrt(near * near + across * across) + sqrt(far * far + across * across)) / (2 * half);
     const double rho = sum + sqrt(fmax(0, sum * sum - 1));
@@ -302,8 +305,8 @@ static int nodes_for(double half, double along, double across, double bound, int
     return 0;
 }
 
-/* The nodes of one box of a pair. The kernel is analytic in each coordinate, with singularities at r^2 = -e^2 and
- * r^2 = -h_t - h_n: the interpolation at n nodes has an error of the order of rho^-n. */
+/* Find the nodes of one box of a pair. The kernel is analytic in each coordinate, with singularities at r^2 = -e^2 and
+ * r^2 = -h_t - h_n, so interpolation at n nodes has an error of the order of rho^-n. */
 static int box_nodes(const struct node_box *box, const struct node_box *other, const double gap[2], double least,
                      double low, double bound, int n[AXES]) {
     for (int axis = 0; axis < 2; axis++) {
@@ -321,7 +324,7 @@ static int box_nodes(const struct node_box *box, const struct node_box *other, c
     return n[2] > 0;
 }
 
-// the nodes of a pair; returns 0 for a pair that is too near
+// find the nodes of a pair; returns 0 if the pair is too near
 static int pair_nodes(const struct search *search, struct node_pair *pair) {
     const struct node_box *const to = &search->tree->to.box[pair->target];
     const struct node_box *const from = &search->tree->from.box[pair->source];
@@ -366,7 +369,7 @@ static void boxes_pair_up(const struct search *search, int target, int source) {
     struct node_pair pair = {.target = target, .source = source};
 
     if (pair_nodes(search, &pair)) {
-        // points where the nodes are not fewer
+        // use points where nodes would not be fewer
         double cost = 0, n_to = pair.to[0] * pair.to[1] * pair.to[2];
         double n_from = pair.from[0] * pair.from[1] * pair.from[2];
         if (target_is_leaf && search->cost * n_targets * fmin(n_sources, n_from) <= CONVERSION + n_to * n_from) {
@@ -421,7 +424,7 @@ static WIDE(void, add_source,
     }
 }
 
-// strengths at the nodes of a box, from the rings of a leaf or from the nodes of the halves
+// find the strengths at the nodes of a box, from the rings of a leaf or from the nodes of the halves
 static void box_gather(const struct tree *tree, bool has_legs, int b) {
     const struct node_tree *const from = &tree->from;
     const struct tree_box *const points = &from->boxes.box[b];
@@ -450,7 +453,7 @@ static void box_gather(const struct tree *tree, bool has_legs, int b) {
     }
 }
 
-// arrays of the nodes of a pair in one box: places, and the values in the order of the places
+// The nodes of a pair in one box as arrays: places, and the values in the same order.
 struct node_grid {
     int n;
     double x[ALL_NODES], y[ALL_NODES], h[ALL_NODES], zero[ALL_NODES], value[VALUES][ALL_NODES];
@@ -562,7 +565,7 @@ static WIDE(double, polynomial,
     return ((sum[0] + sum[4]) + (sum[2] + sum[6])) + ((sum[1] + sum[5]) + (sum[3] + sum[7]));
 }
 
-// nodes of a box to the nodes of the halves, or to the targets of a leaf
+// carry the values at the nodes of a box to the nodes of its halves, or to the targets of a leaf
 static void box_scatter(const struct tree *tree, bool has_legs, bool with_gradient, int b) {
     const struct node_tree *const to = &tree->to;
     const struct tree_box *const points = &to->boxes.box[b];

@@ -1,4 +1,4 @@
-/* diagnostics.c: diagnostics of each fish, then of the school. */
+/* diagnostics.c: derives the quantities of each fish, and then those of the school. */
 #include "school/diagnostics.h"
 
 #include <math.h>
@@ -45,7 +45,6 @@ void diagnostics_remember(struct residual *residual, struct state *state) {
             .heading = control_heading(fish, y)};
         flow_external(residual->school, state->t, sample.com[0], sample.com[1], &sample.stream[0], &sample.stream[1]);
 
-        // forces
         const struct fluid_forces forces = diagnostics_fluid(residual, f, sample.com, y);
         memcpy(sample.friction, forces.friction, sizeof sample.friction);
         diagnostics_fluid_force(forces.resistive, forces.reactive, &forces.pressure, sample.force);
@@ -53,7 +52,8 @@ void diagnostics_remember(struct residual *residual, struct state *state) {
         sample.bias = y[fish->at.phi0];
         memcpy(sample.work, state->balance[f].work, sizeof sample.work);
 
-        // continue from the sample before: the unwrapped heading, and the drift of the stream by trapezoids
+        // continue from the sample before: the heading is unwrapped, and the drift of the stream is integrated by
+        // trapezoids
         if (history->n > 0) {
             const struct sample *before = state_recall(history, 0);
             sample.heading = before->heading + angle_wrap(sample.heading - before->heading);
@@ -62,8 +62,8 @@ void diagnostics_remember(struct residual *residual, struct state *state) {
             }
         }
 
-        // mean speed through the water over one period; the sample capacity - 2 events ago is one period older than the
-        // new sample
+        // the mean speed through the water over one period; the sample capacity - 2 events ago is one period older than
+        // the new one
         if (history->capacity > 1 && history->n >= history->capacity - 1) {
             double way[2];
             way_through_water(&sample, state_recall(history, history->capacity - 2), way);
@@ -96,15 +96,15 @@ double diagnostics_mean_heading(const struct history *history) {
     return sum / (history->n - 1);
 }
 
-// position of the tail in the frame of the water, across the path of the fish
+// where the tail is across the path of the fish, in the frame of the water
 static double tail_across(const struct history *history, int age, const double way[2], double distance) {
     const struct sample *const sample = state_recall(history, age);
     const double x = sample->tail[0] - sample->drifted[0], y = sample->tail[1] - sample->drifted[1];
     return (way[0] * y - way[1] * x) / distance;
 }
 
-/* Peak-to-peak amplitude of the tail across the path of the fish. A crest is the vertex of the parabola through three
- * samples: fourth order in the interval; the largest sample is second order. */
+/* The peak-to-peak amplitude of the tail across the path of the fish. A crest is the vertex of the parabola through
+ * three samples, which is of fourth order in the interval; the largest sample would be of second order. */
 static double peak_to_peak(const struct history *history, const double way[2], double distance) {
     double least = INFINITY, most = -INFINITY;
     for (int age = 0; age < history->n; age++) {
@@ -125,7 +125,8 @@ static double peak_to_peak(const struct history *history, const double way[2], d
     return most - least;
 }
 
-// mean of a force of the samples against the direction of the path, by trapezoids; which: offset in struct sample
+// the mean of a force of the samples against the direction of the path, by trapezoids; which: its offset in struct
+// sample
 static double mean_against(const struct history *history, size_t which, const double way[2], double distance) {
     double sum = 0;
     for (int age = 0; age < history->n; age++) {
@@ -136,8 +137,8 @@ static double mean_against(const struct history *history, size_t which, const do
     return sum / (history->n - 1);
 }
 
-/* The reversals of the steering bias over the last period: turning points between moves of at least a share of the
- * limit, so that the settling and the rounding of a bias do not count. */
+/* How often the steering bias has reversed over the last period. Only moves of at least a share of the limit count, so
+ * that neither a bias that settles nor its rounding does. */
 static int bias_reversals(const struct history *history, double limit) {
     const double least = 0.01 * limit;
     double turn = state_recall(history, 0)->bias; /* the last turning point, or the farthest value since */
@@ -160,7 +161,7 @@ void diagnostics_period(const struct fish *fish, const struct history *history, 
                         struct diagnostics_fish *to) {
     const struct sample *latest = state_recall(history, 0), *earliest = state_recall(history, history->n - 1);
 
-    // A_0: largest magnitude (NaN unless force: pressure), and fraction of the period above the limit, by trapezoids
+    // A_0: its largest magnitude (NaN unless force: pressure), and how long it was above the limit, by trapezoids
     double most = NAN, share = 0;
     for (int age = 0; age < history->n; age++) {
         const double a0 = fabs(state_recall(history, age)->leading_edge);
@@ -172,7 +173,7 @@ void diagnostics_period(const struct fish *fish, const struct history *history, 
     to->separation_share = fish->suction_limit > 0 ? share / (history->n > 1 ? history->n - 1 : 1) : 0;
     to->bias_reversals = fish->control.law == CONTROL_NONE ? 0 : bias_reversals(history, fish->control.limit);
 
-    // instantaneous values, until the second sample
+    // instantaneous values, which stand until there is a second sample
     to->ground_speed = hypot(to->com_velocity[0], to->com_velocity[1]);
     to->speed = hypot(to->com_velocity[0] - latest->stream[0], to->com_velocity[1] - latest->stream[1]);
     to->drift = to->heading_error = to->strouhal = NAN;
@@ -193,8 +194,8 @@ void diagnostics_period(const struct fish *fish, const struct history *history, 
     const double drive = (latest->work[WORK_DRIVING_ON_WATER] - earliest->work[WORK_DRIVING_ON_WATER]) / duration;
     to->mean_power = to->mean_actuation_power + drive;
 
-    // Held (doc/model.md, section 13): the drive of the body also takes the thrust, whose work is no part of the power
-    // of the motion. A body that has travelled no further than rounding has the direction of its heading.
+    // A held body (doc/model.md, section 13): its drive also takes the thrust, whose work is no part of the power of
+    // the motion. A body that has travelled no further than rounding has the direction of its heading.
     const bool is_held = fish->motion.is_held, has_travelled = distance > 1e-9 * fish->length;
     if (is_held) {
         const double ahead[2] = {cos(fish->start_heading), sin(fish->start_heading)};
@@ -228,7 +229,8 @@ struct diagnostics *diagnostics_create(struct arena *arena, const struct school 
     return diagnostics;
 }
 
-// number of free vortices, or markers, inside the outline of a body; the newest own marker lies at the tail: skip
+// How many free vortices or markers are inside the outline of a body. The newest marker of its own is at the tail and
+// does not count.
 static double swept_vortices(const struct school *school, const struct state *state,
                              const struct diagnostics *diagnostics, int f) {
     const struct fish *const fish = &school->fish[f];
@@ -262,7 +264,7 @@ static void diagnostics_fill_fish(struct residual *residual, const struct state 
     to->com_velocity[0] = fish_mass_mean(fish, y + fish->at.vx);
     to->com_velocity[1] = fish_mass_mean(fish, y + fish->at.vy);
 
-    // the desired heading is unwrapped next to the heading
+    // unwrap the desired heading so that it is next to the heading
     to->heading = angle_degrees(state_recall(history, 0)->heading);
     const double desired = control_desired_heading(fish, &state->control[f], state->t, y);
     to->desired_heading = to->heading - angle_degrees(angle_wrap(angle_radians(to->heading) - desired));
@@ -338,7 +340,8 @@ void diagnostics_event(struct residual *residual, const struct state *state, str
     }
     diagnostics->least_distance = school->n_fish > 1 ? least : NAN;
 
-    // the circulation of every vortex: bound, nascent, free, and removed, which is retained or has returned to the body
+    // the circulation of every vortex: bound, nascent, free, and removed, whether it is retained or has returned to the
+    // body
     double total = 0;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];

@@ -1,5 +1,5 @@
-/* diagnostics.h: all derived quantities of a state, for results. doc/model.md, section 13. Tested by
- * tests/school/test_diagnostics.c. */
+/* diagnostics.h: all quantities that results report but no equation needs, derived from a state. doc/model.md, section
+ * 13. Tested by tests/school/test_diagnostics.c. */
 #ifndef DIAGNOSTICS_H
 #define DIAGNOSTICS_H
 
@@ -9,20 +9,20 @@
 #include "school/residual.h"
 #include "state/state.h"
 
-/* Samples of every fish at the events of the last period, and quantities over the period: means,
- * course, amplitude of the tail. doc/model.md, section 13. */
+/* Every fish keeps samples at the events of the last period, from which follow means, the course, and the amplitude of
+ * the tail. doc/model.md, section 13. */
 
-/* Add a sample to the history of every fish; call at every event, before diagnostics_event. */
+/* Add a sample to the history of every fish. Call it at every event, before diagnostics_event. */
 void diagnostics_remember(struct residual *residual, struct state *state);
 
-/* Course: direction of the displacement of the centre of mass over the last period, rad, rate of the course, rad s-1,
- * and mean speed, m s-1; without displacement all are 0. Returns false in the first period, else true. */
+/* Find the course, which is the direction in which the centre of mass has moved over the last period, rad, its rate,
+ * rad s-1, and the mean speed, m s-1. Without any movement all are 0. Returns false in the first period, then true. */
 bool diagnostics_course(const struct history *history, double interval, double *course, double *rate, double *speed);
 
-/* Mean of the headings in a history, rad, unwrapped. */
+/* The mean of the headings in a history, rad, unwrapped. */
 double diagnostics_mean_heading(const struct history *history);
 
-/* Fill the quantities of *to over the last period, or since the start within the first period; com_velocity and
+/* Fill the quantities of *to that are over the last period, or since the start while that is shorter. com_velocity and
  * desired_heading of *to are input. */
 void diagnostics_period(const struct fish *fish, const struct history *history, double interval,
                         struct diagnostics_fish *to);

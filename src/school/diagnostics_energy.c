@@ -1,4 +1,4 @@
-/* diagnostics_energy.c: powers and energies by terms, then integrals over time. */
+/* diagnostics_energy.c: powers and energies term by term, and their integrals over time. */
 #include "school/diagnostics_energy.h"
 
 #include <math.h>
@@ -14,8 +14,9 @@
 #include "force/force_model.h"
 #include "school/diagnostics_momentum.h"
 
-// strains, strain rates for the damping, and stresses for the actuation of fish f: from the positions of the nodes, or,
-// with strain damping, from the strains and stresses integrated over the steps
+// The strains, the strain rates for the damping, and the stresses for the actuation of fish f. They follow from the
+// positions of the nodes or, with strain damping, from the strains and stresses that have been integrated over the
+// steps.
 static struct rod_strains find_strains(struct residual *residual, int f, const struct actuation *muscle,
                                        const double *y) {
     const struct fish *fish = &residual->school->fish[f];
@@ -72,7 +73,8 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
                                       .contact = contact_terms(residual->contact, f, y).power,
                                       .driving = driving};
 
-    // the powers in the frame of the external flow at the centre of mass; without external flow both frames agree
+    // the powers in the frame of the external flow at the centre of mass; without external flow both frames are the
+    // same
     const double com[2] = {fish_mass_mean(fish, y + fish->at.x), fish_mass_mean(fish, y + fish->at.y)};
     double stream[2], of_fluid[2];
     power.on_water = power.drag + power.added_mass + power.wake + power.pressure + power.suction;
@@ -108,7 +110,6 @@ double diagnostics_energy(struct residual *residual, int f, double t, const doub
     return of.kinetic + of.bending + of.stretching + of.contact;
 }
 
-// the powers for enum work
 static void gather_powers(const struct diagnostics_power *power, double *of) {
     of[WORK_ALL] = power->actuation + power->damping + power->drag + power->added_mass + power->wake + power->driving;
     of[WORK_ALL] += power->pressure + power->suction + power->contact;
@@ -119,13 +120,13 @@ static void gather_powers(const struct diagnostics_power *power, double *of) {
     of[WORK_DRIVING_ON_WATER] = power->driving_on_water;
 }
 
-// the works of fish f up to the end of a step
+// add the work of the step to the works of fish f
 static void add_works(struct residual *residual, struct state *state, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
     struct energy_balance *const balance = &state->balance[f];
 
-    // integrate strains and stresses to the end of the step: stresses by the positions, corrected by the momentum
-    // balance
+    // Integrate strains and stresses to the end of the step. The stresses follow from the positions and are corrected
+    // by the momentum balance.
     const double h = t - balance->t[0], g = balance->n > 1 ? balance->t[0] - balance->t[1] : 0;
     if (fish->damping != DAMPING_CURVATURE && h > 0) {
         double *const scratch = residual->scratch, *const stress = scratch + fish->at.vx;
@@ -146,7 +147,7 @@ static void add_works(struct residual *residual, struct state *state, int f, dou
     double newest[N_WORKS];
     gather_powers(&now, newest);
 
-    // integrate, and shift the powers by one step
+    // integrate the powers, and move them on by one step
     for (int i = 0; i < N_WORKS; i++) {
         const double power[3] = {newest[i], balance->power[0][i], balance->power[1][i]};
         if (t > times[1]) balance->work[i] += quadrature_newest(balance->n + 1, times, power);
@@ -195,7 +196,7 @@ void diagnostics_after_jump(struct residual *residual, struct state *state) {
     state_begin_rates(state, residual->school);
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < residual->school->n_fish; f++) {
-        // strains and stresses of a consistent state: initial values of add_works
+        // the strains and stresses of a consistent state, from which add_works starts
         const struct fish *fish = &residual->school->fish[f];
         struct energy_balance *const balance = &state->balance[f];
         residual_actuate(residual, f, state->t, state->y);

@@ -1,13 +1,14 @@
-/* diagnostics_energy.h: energies and powers of a fish at one instant, and the energy balance over the steps of the
- * integrator. doc/model.md, section 13; doc/numerics.md, section 9. Tested by tests/school/test_diagnostics.c. */
+/* diagnostics_energy.h: the energies and powers of a fish at one instant, and the energy balance, which adds up the
+ * work over the steps of the integrator. doc/model.md, section 13; doc/numerics.md, section 9. Tested by
+ * tests/school/test_diagnostics.c. */
 #ifndef DIAGNOSTICS_ENERGY_H
 #define DIAGNOSTICS_ENERGY_H
 
 #include "school/residual.h"
 #include "state/state.h"
 
-/* Powers of one fish, W, from the unknowns, the rates of the state, and the flow velocity of the last evaluation of the
- * residual. friction is a part of drag; all other powers of the first two lines add up to the total power. */
+/* The powers of one fish, W, from the unknowns, the rates of the state, and the flow velocity of the last evaluation of
+ * the residual. friction is a part of drag; all other powers of the first two lines add up to the total power. */
 struct diagnostics_power {
     double actuation, damping, drag, friction, added_mass, wake, pressure, suction, driving, contact; /* W */
     double on_water,
@@ -16,34 +17,34 @@ struct diagnostics_power {
 };
 struct diagnostics_power diagnostics_power(struct residual *residual, int f, double t, const double *y);
 
-/* Energies of one fish, J; contact: half the energy of the contacts of the fish. */
+/* The energies of one fish, J; contact is half the energy of its contacts. */
 struct diagnostics_energies {
     double kinetic, bending, stretching, contact;
 };
 struct diagnostics_energies diagnostics_energies(struct residual *residual, int f, double t, const double *y);
 
-/* The sum of diagnostics_energies, J. */
+/* Their sum, J. */
 double diagnostics_energy(struct residual *residual, int f, double t, const double *y);
 
-/* After a step of the integrator to time t: add the work of the step to the energy balances, by the quadratic through
+/* After a step of the integrator to time t, add the work of the step to the energy balances, by the quadratic through
  * the powers of the last three steps, and update the closest approach of two bodies. */
 void diagnostics_step(struct residual *residual, struct state *state, double t, const double *y);
 
-/* Start the energy balances and the record of the closest approach at the first event, for a consistent state. The
- * record of self-crossings is not changed. */
+/* Start the energy balances and the record of the closest approach at the first event, from a consistent state. The
+ * record of self-crossings stays as it is. */
 void diagnostics_start(struct residual *residual, struct state *state);
 
-/* Restart energy balances, momentum balances, closest approach and self-crossings at a later event. Works are not
- * reset, so means over a period remain valid. */
+/* Restart energy balances, momentum balances, closest approach and self-crossings at a later event. Works are kept, so
+ * that means over a period remain valid. */
 void diagnostics_restart(struct residual *residual, struct state *state);
 
-/* At an event with a jump of the powers of fish f but a continuous state (a new rate of the bias): the integral of the
- * next step begins with the present powers. */
+/* At an event where the powers of fish f jump although its state is continuous (the bias has a new rate), let the
+ * integral of the next step begin with the present powers. */
 void diagnostics_begin(struct residual *residual, struct state *state, int f);
 
-/* Call before and after a jump of the state. The energy of the jump counts as work, and quadratures of later steps and
- * rates at later events begin after the jump. Example: a jump of the bias changes the natural curvature, and thereby
- * the bending energy. */
+/* Call these before and after a jump of the state. The energy of the jump then counts as work, and quadratures of later
+ * steps and rates at later events begin after it. A jump of the bias is an example: it changes the natural curvature
+ * and thereby the bending energy. */
 void diagnostics_before_jump(struct residual *residual, struct state *state);
 void diagnostics_after_jump(struct residual *residual, struct state *state);
 

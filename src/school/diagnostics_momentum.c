@@ -1,4 +1,5 @@
-/* diagnostics_momentum.c: impulses of bodies and fluid, external forces, and the residual of the momentum balance. */
+/* diagnostics_momentum.c: the impulses of bodies and fluid, the external forces, and what is left of the momentum
+ * balance. */
 #include "school/diagnostics_momentum.h"
 
 #include <math.h>
@@ -42,8 +43,8 @@ void diagnostics_forces(struct residual *residual, int f, double t, const double
     to->reactive_moment = forces.reactive_moment;
     to->pressure = forces.pressure;
 
-    // The direction of the thrust: heading of a free fish; of prescribed motion the direction of travel, of a held body
-    // through the water without the gust. doc/model.md, section 13.
+    // The thrust points along the heading of a free fish. For prescribed motion it points along the travel, and for a
+    // held body along its travel through the water without the gust. doc/model.md, section 13.
     const double heading = is_prescribed ? fish->start_heading : control_heading(fish, y);
     double ahead[2] = {cos(heading), sin(heading)}, force[2];
     if (fish->motion.is_held) {
@@ -55,7 +56,7 @@ void diagnostics_forces(struct residual *residual, int f, double t, const double
     diagnostics_fluid_force(forces.resistive, forces.reactive, &to->pressure, force);
     to->thrust = force[0] * ahead[0] + force[1] * ahead[1];
 
-    // constraint forces: reactions of prescribed nodes; moment of the reactions plus the moment of the clamp
+    // constraint forces are the reactions of prescribed nodes; their moment includes that of the clamp
     const struct contact_terms contact = contact_terms(residual->contact, f, y);
     memcpy(to->contact_force, contact.force, sizeof to->contact_force);
     to->constraint_force[0] = to->constraint_force[1] = 0;
@@ -72,15 +73,15 @@ void diagnostics_forces(struct residual *residual, int f, double t, const double
     }
 }
 
-/* Whether the momentum of a fish and of the fluid can balance: the body takes the momentum of its vortices, and the
- * depth is constant along the body; or there is no fluid. */
+/* Whether the momentum of a fish and of the fluid can balance. It can if the body takes the momentum of its vortices
+ * and the depth is constant along the body, or if there is no fluid. */
 static bool diagnostics_has_reaction(const struct school *school, const struct fish *fish) {
     return !(school->density > 0) || (force_model_of(fish)->has_balance && impulse_depth(fish) > 0);
 }
 
 // ---- momentum of a body, impulse of its vortices
 
-// add a momentum, or force, at a point, and the moment about the origin
+// add a momentum, or a force, at a point together with its moment about the origin
 static void add_with_moment(double sum[3], double x, double y, double along_x, double along_y) {
     sum[0] += along_x;
     sum[1] += along_y;
@@ -106,7 +107,7 @@ static void add_nascent(struct impulse_moments *sum, const struct flow *flow, co
     }
 }
 
-/* Momenta of a fish at the event of the state: of the body; of the fluid, the impulse of all vortices; of the
+/* The momenta of a fish at the event of the state: of the body, of the fluid (the impulse of all vortices), and of the
  * prescribed components of nodes, with added momentum. */
 struct momenta {
     double body[3], fluid[3], given[3];
@@ -146,7 +147,7 @@ static struct momenta momenta_of(struct residual *residual, const struct state *
 
 // ---- external forces
 
-// all external forces except images; call after diagnostics_power
+// all external forces except those of images; call it after diagnostics_power
 static void external_force(struct residual *residual, int f, double t, const double *y, double force[3]) {
     const struct school *const school = residual->school;
     const struct state *const state = residual->state;
@@ -166,8 +167,8 @@ static void external_force(struct residual *residual, int f, double t, const dou
     const double *const separation = fluid.pressure.separation;
     add_with_moment(force, y[fish->at.x], y[fish->at.y], -separation[0], -separation[1]);
 
-    // constraint forces of prescribed nodes, from m a minus all forces, without the rate of the momentum of these
-    // nodes: momenta.given is the integral of this rate
+    // The constraint forces of prescribed nodes are m a minus all forces, without the rate of the momentum of these
+    // nodes, because momenta.given is its integral.
     double *const balance = residual->scratch;
     if (fish_n_prescribed(fish) > 0) residual_balance(residual, f, y, balance);
     for (int k = 0; k < fish_n_prescribed(fish); k++) {
@@ -184,8 +185,8 @@ static void external_force(struct residual *residual, int f, double t, const dou
         force[2] -= y[fish->at.vx + k] * momentum[1] - y[fish->at.vy + k] * momentum[0];
     }
 
-    // the external flow without a travelling gust on all vortices of the fish; the velocity is linear in the position,
-    // so the moments of free, nascent and bound vortices suffice
+    // The external flow, without a travelling gust, acts on all vortices of the fish. Its velocity is linear in the
+    // position, so the moments of free, nascent and bound vortices suffice.
     double u, v, gust[2];
     flow_external(school, t, 0, 0, &u, &v);
     flow_external_gust(school, t, 0, 0, &gust[0], &gust[1]);
@@ -232,7 +233,7 @@ void diagnostics_momentum_event(struct residual *residual, struct state *state) 
 
     for (int f = 0; f < school->n_fish; f++) has_reaction |= diagnostics_has_reaction(school, &school->fish[f]);
 
-    // walls or a travelling gust, never both
+    // there are walls or a travelling gust, never both
     const bool has_walls = school->walls.n > 0, has_gust = school->gust_profile != GUST_UNIFORM;
     if (!has_reaction || !(school->density > 0)) return;
     if (has_walls) flow_images(flow, state);
@@ -314,7 +315,7 @@ void diagnostics_momentum_start(struct residual *residual, struct state *state) 
 }
 
 bool diagnostics_momentum_is_defined(const struct school *school) {
-    // forces between rings of different depths are equal and opposite, forces between strips are not
+    // forces between rings of different depths are equal and opposite, but forces between strips are not
     const double depth = impulse_depth(&school->fish[0]);
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
@@ -330,7 +331,7 @@ void diagnostics_momentum(struct residual *residual, const struct state *state, 
     double *const balance = diagnostics->momentum_balance;
     memset(balance, 0, sizeof diagnostics->momentum_balance);
 
-    // the sizes of the terms of the balance, and the sum of the momenta of all bodies at one length per beat
+    // the sizes of the terms of the balance, and what the momenta of all bodies would be at one length per beat
     double of_bodies = 0, of_fluid = 0, external = 0, usual = 0;
     for (int f = 0; f < school->n_fish; f++) {
         const struct momentum_balance *const momentum = &state->momentum[f];

@@ -1,4 +1,4 @@
-/* diagnostics_momentum.h: impulse of the fluid, external forces, and the momentum balance over the steps of the
+/* diagnostics_momentum.h: the impulse of the fluid, external forces, and the momentum balance over the steps of the
  * integrator. doc/model.md, section 13. Tested by tests/school/test_diagnostics_momentum.c. */
 #ifndef DIAGNOSTICS_MOMENTUM_H
 #define DIAGNOSTICS_MOMENTUM_H
@@ -8,7 +8,7 @@
 #include "school/residual.h"
 #include "state/state.h"
 
-/* Quantities derived from a state for results, as plain values. doc/model.md, section 13. */
+/* What results report about a state, as plain values. doc/model.md, section 13. */
 
 /* One fish at one event. */
 struct diagnostics_fish {
@@ -32,12 +32,12 @@ struct diagnostics_fish {
     double contact_power;                    /* power received for this half of the contacts, W */
     double energy_balance;                   /* J */
     double actuation_work;                   /* work of the muscle since the start, J */
-    /* forces on the body, N, and moments about the centre of mass, N m; friction and cross-flow:
+    /* forces on the body, N, and moments about the centre of mass, N m; friction and cross-flow are the parts of the
      * resistive force along and across the body */
     double resistive_force[2], friction_force[2], cross_flow_force[2], reactive_force[2], constraint_force[2];
     double contact_force[2]; /* force of all bodies in contact, N */
-    /* x, y, N s, and angular about the origin, N m s: impulse of all vortices including lost vortices; impulse of lost
-     * vortices; momentum taken by the lengths s of legs; impulse of the external forces */
+    /* x, y, N s, and angular about the origin, N m s: impulse of all vortices including those that are lost; impulse of
+     * the lost ones; momentum that the lengths s of legs take; impulse of the external forces */
     double fluid_impulse[3], lost_impulse[3], leg_impulse[3], external_impulse[3];
     double resistive_moment, friction_moment, reactive_moment, constraint_moment;
     struct pressure_forces pressure; /* force: pressure, else 0 */
@@ -70,33 +70,33 @@ struct diagnostics {
     double polarisation;           /* length of the mean unit vector of the headings */
 };
 
-/* The forces on a fish by kind, and the constraint forces of prescribed motion. doc/model.md,
- * section 13. */
+/* The forces on a fish by kind, among them the constraint forces of prescribed motion. doc/model.md, section 13. */
 
-/* Fill forces and moments of *to at the unknowns y and time t of the last residual evaluated; to->com is input. */
+/* Fill the forces and moments of *to, for the unknowns y and the time t of the last residual evaluated; to->com is
+ * input. */
 void diagnostics_forces(struct residual *residual, int f, double t, const double *y, struct diagnostics_fish *to);
 
-/* The total force of the fluid on a body, N: resistive and reactive force, pressure and suction. */
+/* The total force of the fluid on a body, N, which is the sum of resistive and reactive force, pressure and suction. */
 void diagnostics_fluid_force(const double resistive[2], const double reactive[2],
                              const struct pressure_forces *pressure, double force[2]);
 
-/* The forces of the fluid on fish f, moments about a point. */
+/* The forces of the fluid on fish f, with moments about a point. */
 struct fluid_forces diagnostics_fluid(struct residual *residual, int f, const double about[2], const double *y);
 
 /* Add the impulse of the external forces in the step that ended at t to the momentum balance of fish f, as
- * diagnostics_step adds works. n: number of values for the quadrature; times: the newest time first. n = 0: only store
- * the forces, as the first values. */
+ * diagnostics_step adds works. n: number of values for the quadrature; times: the newest one first. n = 0: only store
+ * the forces as the first values. */
 void diagnostics_momentum_step(struct residual *residual, struct state *state, int f, double t, const double *y, int n,
                                const double times[3]);
 
-/* Add the impulse of images in walls, and the momentum taken by legs of rings, since the event before. Call at every
- * event, after the velocities of all wakes and the residual have been evaluated. */
+/* Add what has happened since the last event: the impulse of images in walls, and the momentum taken by legs of rings.
+ * Call it at every event, after the velocities of all wakes and the residual have been evaluated. */
 void diagnostics_momentum_event(struct residual *residual, struct state *state);
 
 /* Start all momentum balances with the present state. */
 void diagnostics_momentum_start(struct residual *residual, struct state *state);
 
-/* Whether the momentum balance is defined: all fish have a reaction and, in a fluid, strips of one depth. */
+/* Whether there is a momentum balance, because all fish have a reaction and, in a fluid, strips of one depth. */
 bool diagnostics_momentum_is_defined(const struct school *school);
 
 /* Fill the impulses of all fish, and the momentum balance of the school, at the event of the state. */

@@ -1,4 +1,4 @@
-/* warnings.c: the size of every defect of a result, relative to the limit of the warning, and the message. */
+/* warnings.c: measures every defect of a result in units of the limit of its warning, and words the message. */
 #include "school/warnings.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@
 #include "body/rod.h"
 #include "flow/flow_at_bodies.h"
 
-/* One fish, and all that its warnings read. */
+/* One fish, and everything that warnings about it read. */
 struct subject {
     const struct school *school;
     const struct state *state;
@@ -18,17 +18,18 @@ struct subject {
     int f;
 };
 
-/* The size of a defect without degrees. */
+/* The size of a defect that is either there or not. */
 static const double always = 2;
 
-/* The least number of events in a beat; the largest change of the speed in a beat of nearly steady swimming. */
+/* The least number of events in a beat, and the largest change of the speed from beat to beat in nearly steady
+ * swimming. */
 enum { MIN_EVENTS = 20 };
 static const double nearly_steady = 0.1;
 
-/* One part in a thousand million for the rounding error of a time or a quotient. */
+/* Leaves one part in a thousand million for the rounding error of a time or a quotient. */
 static const double rounded = 1 - 1e-9;
 
-// ---- the warnings about one fish: size of the defect, above 1 a warning, and line
+// ---- warnings about one fish: the size of the defect, of which more than 1 is a warning, and the line
 
 double warnings_bending_length(const struct fish *fish) {
     const double omega = 2 * M_PI * fish->frequency;
@@ -58,7 +59,7 @@ static double solution_warning(enum warning warning, const struct subject *subje
                      "the residual remains, the case is outside the range of the model",
                      who, now->energy_balance, work);
 
-            // the works are small in the first beat: include the energy of the body, and of one length per beat
+            // in the first beat the works are small, so include the energy of the body and that of one length per beat
             if (t < period) {
                 const double speed = fish->length / period;
                 work = larger(work, larger(energy, fish->total_mass * speed * speed));
@@ -80,7 +81,7 @@ static double solution_warning(enum warning warning, const struct subject *subje
                      "0.25",
                      who, 100 * now->separation_share, now->leading_edge_most, fish->suction_limit);
 
-            // at low speed after a start the circulations are large for the speed
+            // at low speed after a start the circulations are large compared with the speed
             if (period > 0 && !(fabs(now->drift) < nearly_steady)) return 0;
             return fish->suction > 0 ? now->separation_share / 0.1 : 0;
 
@@ -137,13 +138,14 @@ static double resolution_warning(enum warning warning, const struct subject *sub
                      "sheet_points or a longer time.shedding_interval",
                      who, lengths, fish->n_sheet, ceil(n_points) + 1);
 
-            // only at nearly steady speed: every fish that starts from rest is slow; an equilibrium sheds nothing
+            // Only at nearly steady speed, because every fish that starts from rest is slow at first; an equilibrium
+            // sheds nothing.
             if (subject->school->shedding != SHEDDING_SHEET || !(now->speed > 0)) return 0;
             if (subject->state->wake[subject->f].n_vortex == 0) return 0;
             if (period > 0 && !(fabs(now->drift) < nearly_steady)) return 0;
 
-            // The sheet needs M - 1 >= 3.2/sqrt(U Dt/L). The warning begins at 0.9 of this number, because the error
-            // grows slowly (0.25 % of the circulation at 0.63). A fish that needs 1000 points does not swim.
+            // The sheet needs M - 1 >= 3.2/sqrt(U Dt/L) points. The warning begins at 0.9 of this, because the error
+            // grows slowly (0.25 % of the circulation at 0.63). A fish that would need 1000 points does not swim.
             return n_points < 1000 ? 0.9 * n_points / (fish->n_sheet - 1) : 0;
 
         case WARNING_TAIL:
@@ -213,7 +215,7 @@ static double model_warning(enum warning warning, const struct subject *subject,
     }
 }
 
-/* Which function has a warning about a single fish; NULL: the warning is about the school. */
+/* Which function judges a warning about a single fish; NULL: the warning is about the school. */
 static double (*const of_fish[N_WARNINGS])(enum warning, const struct subject *, const char *, char *) = {
     [WARNING_ENERGY] = solution_warning,   [WARNING_BEATS] = resolution_warning, [WARNING_DRIFT] = solution_warning,
     [WARNING_EVENTS] = resolution_warning, [WARNING_SHEET] = resolution_warning, [WARNING_MODES] = model_warning,
@@ -224,14 +226,14 @@ static double (*const of_fish[N_WARNINGS])(enum warning, const struct subject *,
 
 // ---- divergence
 
-// the circulation of a foil is about 3 L U, and a tail may be several times faster than the body: 100 is no physical
-// result
+// The circulation of a foil is about 3 L U, and a tail may be several times faster than the body: 100 is no physical
+// result.
 static const double most_of_case = 100;
 
 void warnings_divergence(const struct school *school, const struct state *state, double worst[N_DIVERGENCE],
                          long *diverged) {
-    // upper bound of the speeds prescribed by the case: sum for one fish of beat, motion, start, external flow, and
-    // free acceleration by the load; the largest sum of all fish
+    // An upper bound of the speeds that the case prescribes. For one fish it is the sum over beat, motion, start,
+    // external flow and free acceleration by the load; the largest one counts.
     double of_case = 0;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
@@ -258,7 +260,7 @@ void warnings_divergence(const struct school *school, const struct state *state,
             circulation = larger(circulation, fabs(wake->circulation[i]));
         }
 
-        // a value that is not finite is above every limit; a body at rest without a beat has no limit
+        // a value that is not finite exceeds every limit; a body at rest without a beat has no limit
         const double most = larger(speed, circulation / fish->length);
         const double size = !isfinite(most) || !isfinite(limit) ? INFINITY : limit > 0 ? most / limit : 0;
         if (!(size > worst[DIVERGENCE_SIZE])) continue;
@@ -319,7 +321,7 @@ static void name_worst(const struct school *school, int worst, int n, char who[W
     snprintf(who, WHO_BYTES, n > 1 ? "%.40s (the worst of %d fish)" : "%.40s", school->fish[worst].name, n);
 }
 
-// the largest part of the velocity of wakes that may decay at a body
+// At most this part of the velocity of wakes at a body may be lost by decay.
 static const double most_decayed = 0.05;
 
 // write the line of a warning about the school, if it applies
@@ -372,8 +374,8 @@ static bool school_warning(enum warning warning, struct residual *residual, cons
             return true;
 
         case WARNING_MOMENTUM:
-            // in the longest beat, or, without beat, in the time of one length, all terms are small, and a start with a
-            // jump leaves up to 0.12: include the momentum of all bodies at one length per beat
+            // In the longest beat (without a beat, in the time of one length) all terms are small, and a start with a
+            // jump leaves up to 0.12: include the momentum that all bodies have at one length per beat.
             for (int f = 0; f < school->n_fish; f++) {
                 const struct fish *const fish = &school->fish[f];
                 const double rate = fish_rate(school, fish);
@@ -439,7 +441,8 @@ int warnings_line(enum warning warning, struct residual *residual, const struct 
     const struct school *const school = residual->school;
     if (!of_fish[warning]) return school_warning(warning, residual, state, diagnostics, line);
 
-    // the fish with the largest size; accuracy warnings are suppressed for the published force
+    // find the fish with the largest defect; for a model that reproduces an article, warnings about accuracy are
+    // suppressed
     struct subject subject = {school, state, diagnostics, residual->scratch, 0};
     double most = 1;
     int n = 0, worst = 0;
