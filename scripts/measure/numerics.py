@@ -310,7 +310,7 @@ def markers(bench):
             for interval in (0.02, 0.01):
                 run = bench.run(NINE.format(span=span, interval=interval) + "".join(fish))
                 kept = int(run["wake_count"][-1].sum())
-                balance = float(np.linalg.norm(run["momentum_balance"][-1].sum(axis=0)))
+                balance = float(np.linalg.norm(run["momentum_balance"][-1]))
                 yield name, span, interval, len(fish) * round(3 / interval), kept, short(balance)
 
 
@@ -341,7 +341,7 @@ def lifetimes(bench):
         yield (lifetime, decay, f"{alone['steady_speed'][0]:.5f}", f"{alone['steady_cost_of_transport'][0]:.5f}", alone["steady_beats"],
                *changes, f"{max(math.hypot(*value) for value in pair['steady_multiplier']):.3f}" if pair else "not found",
                pair["steady_beats"] if pair else "over 250",
-               short(float(np.linalg.norm(swim["momentum_balance"][-1].sum(axis=0)))),
+               short(float(np.linalg.norm(swim["momentum_balance"][-1]))),
                f"{bench.seconds('diamond_pressure', *keys, 'time.shedding_interval=0.01', 'time.end=12', repeats=1):.2f}")
 
 
