@@ -1,4 +1,5 @@
-/* others.c: far points and their polynomials; near sources by a bound for every group; far wakes and far bodies. */
+/* others.c: far points with their polynomials, a bound for every group of sources that says whether it is near, and the
+ * sums over far wakes and far bodies. */
 #include "flow/others.h"
 
 #include <limits.h>
@@ -28,9 +29,9 @@ struct group {
     double x, y, radius, q, d, half, leg, speed;
 };
 
-/* A body at the event: the distance of its ends; distances of the body from the chord, and of its sources from the
- * curve of the far points; the largest speed of a node, m s-1; sums of the sizes of the strengths; the half span; its
- * number of sources. */
+/* What the bounds need to know about a body at the event: the distance of its ends; how far the body is from its chord,
+ * and its sources from the curve of the far points; the largest speed of a node, m s-1; the sums of the sizes of its
+ * strengths; the half span; its number of sources. */
 struct body_at_event {
     double chord, bend, beside, speed, q, d, half;
     int n;
@@ -188,17 +189,18 @@ const struct near_sources *others_near(const struct flow *flow, int f, int *n) {
 
 // ---- bounds
 
-/* Error of the polynomial between the FAR points of a body, a power of two, over the value: 2 rho^-FAR. The smallest
- * ellipse with foci at both ends of the body around the other place has this axis, (rho + 1/rho)/2, over the distance
- * of the foci. */
+/* How large the error of the polynomial between the FAR points of a body is, over the value: 2 rho^-FAR, where FAR is a
+ * power of two. The smallest ellipse around the other place with foci at both ends of the body has this axis, (rho +
+ * 1/rho)/2, over the distance of the foci. */
 static double polynomial_error(double axis) {
     double power = axis + sqrt(axis * axis - 1);
     for (int k = FAR; k > 1; k /= 2) power *= power;
     return 2 / power;
 }
 
-/* Whether every source of a group is far: the errors of the polynomial, of the gradient in place of the kernel, and for
- * wakes of the parabola in time. Source and body may approach in an interval, and the body is bent. */
+/* Whether every source of a group is far. Three errors have to be small: of the polynomial, of the gradient that
+ * replaces the kernel, and for wakes of the parabola in time. The bounds allow for source and body to approach in an
+ * interval, and for the bend of the body. */
 static bool is_far(const struct others_fish *to, double interval, const struct kernel_pair *pair,
                    const struct group *group, bool is_wake, double tolerance) {
     const double chord = to->at_event.chord, step = interval * (to->at_event.speed + group->speed);

@@ -1,4 +1,5 @@
-/* event.c: steps of the event between two intervals. */
+/* event.c: what happens to the water and to the fish between two intervals, step by step. event_next is the event of a
+ * run; event_start and event_change are its variants at the start and after a change from outside. */
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -14,15 +15,15 @@
 #include "school/warnings.h"
 #include "state/state.h"
 
-// evaluate the equations; STATUS_RETRY is final, because an event has no step size
+// evaluate the equations; STATUS_RETRY becomes final, because an event has no step size to reduce
 static enum status event_evaluate(struct residual *residual, const struct state *state) {
     const enum status status =
         residual_evaluate(residual, &residual_run, state->t, state->y, state->yp, residual->scratch);
     return status == STATUS_RETRY ? status_fail(STATUS_SOLVER, "%s", status_message()) : status;
 }
 
-// release a vortex of every fish, with the circulation shed since the last release; the marker of a free sheet has the
-// circulation of the body
+// Every fish releases a vortex with the circulation that it has shed since the last release. The marker of a free sheet
+// is labelled with the circulation of the body instead.
 static void event_release(struct state *state, const struct school *school) {
     for (int f = 0; f < school->n_fish; f++) {
         struct wake *const wake = &state->wake[f];
@@ -37,16 +38,16 @@ static void event_release(struct state *state, const struct school *school) {
     }
 }
 
-// impulsive shedding: a vortex appears at the tail
+// impulsive shedding: a vortex appears at the tail at once
 static enum status event_release_impulse(struct state *state, struct residual *residual,
                                          struct initial_conditions *initial) {
     const struct school *school = residual->school;
     if (school->kutta == KUTTA_EDGE) {
-        // circulation for a vanishing bound vortex at the tail
+        // the circulation that makes the bound vortex at the tail vanish
         const struct residual_mode impulse = {.shed = SHED_BY_IMPULSE};
         TRY(initial_conditions_solve(initial, &impulse, state->t, state->y, state->yp));
     } else {
-        // shedding rate times the interval
+        // the shedding rate times the interval
         TRY(event_evaluate(residual, state));
         for (int f = 0; f < school->n_fish; f++) {
             state->y[school->fish[f].at.circulation] += school->interval * residual_kutta_rate(residual, f, state->y);
@@ -59,8 +60,8 @@ static enum status event_release_impulse(struct state *state, struct residual *r
 
 enum { ALL = -1 };
 
-// evaluate the velocities of all free vortices at the present state; n_new: number of vortices per fish without a
-// previous velocity, or ALL
+// Evaluate the velocities of all free vortices at the present state. n_new: so many vortices of each fish have no
+// velocity from before, or ALL.
 static void event_wake_velocities(struct state *state, struct residual *residual, int n_new) {
     const struct school *school = residual->school;
     struct flow *const flow = residual->flow;
@@ -73,8 +74,8 @@ static void event_wake_velocities(struct state *state, struct residual *residual
         struct wake *const wake = &state->wake[f];
         const int first = flow->wake_range[f].first, newest = first + wake->n_vortex - 1, last = fish->n_nodes - 1;
 
-        // A new marker starts with the velocity of the fluid at the tail, without the forward component of the slip
-        // along the body: with this component, a tail that moves backwards would place the sheet on the body.
+        // A new marker starts with the velocity of the fluid at the tail, but without the forward component of the slip
+        // along the body. With it, a tail that moves backwards would place the sheet on the body.
         if (wake->has_markers) {
             const double velocity[2] = {state->y[fish->at.vx + last], state->y[fish->at.vy + last]};
             const struct direction tail = fish_direction(fish, &fish->tail_tangent, state->y);
@@ -134,12 +135,12 @@ static bool event_control(struct state *state, struct residual *residual) {
     return jumps;
 }
 
-// remaining steps of an event after the velocities of the free vortices. jumps: the unknowns have jumped; *jumped: the
-// unknowns have jumped, or a control law makes the unknowns jump
+// The rest of an event, after the velocities of the free vortices are known. jumps: the unknowns have jumped. *jumped:
+// they have, or a control law has made them jump.
 static enum status event_finish(struct state *state, struct residual *residual, struct initial_conditions *initial,
                                 int jumps, int *jumped) {
-    // The flow at the event, where unknowns jump, and where shedding or control take values of it. For the samples of
-    // the history the last evaluation of the step is exact to the tolerance of Newton's iteration.
+    // Evaluate the flow at the event if unknowns jump, or if shedding or control take values from it. The samples of
+    // the history do not need it: the last evaluation of the step is exact to the tolerance of Newton's iteration.
     const struct school *const school = residual->school;
     bool uses_flow = jumps || school->shedding != SHEDDING_SHEET;
     for (int f = 0; f < school->n_fish; f++) uses_flow |= control_uses_moment(&school->fish[f]);
@@ -167,20 +168,20 @@ enum status event_start(struct state *state, struct residual *residual, struct i
     const bool is_sheet = school->shedding == SHEDDING_SHEET, has_vortices = school->n_vortices > 0;
     struct residual_mode mode = {.velocities_are_given = true};
 
-    // release the first markers, in the flow without shed circulation
+    // release the first markers while no circulation has been shed
     if (is_sheet) {
         mode.shed = SHED_IS_GIVEN;
         TRY(initial_conditions_solve(initial, &mode, state->t, state->y, state->yp));
         event_release(state, school);
     }
 
-    // the vortices of the case, in the wake of the first fish
+    // put the vortices of the case into the wake of the first fish
     for (int i = 0; i < school->n_vortices; i++) {
         const double *const vortex = school->vortices + 3 * (long)i;
         TRY(wake_add_vortex(&state->wake[0], school, state->t, vortex[0], vortex[1], vortex[2]));
     }
 
-    // solve with all vortices; then with the law of shedding, if the first markers had a given circulation
+    // solve with all vortices, and if the first markers had a given circulation, once more with the law of shedding
     if (has_vortices || !is_sheet) TRY(initial_conditions_solve(initial, &mode, state->t, state->y, state->yp));
     if (has_vortices || is_sheet) event_wake_velocities(state, residual, ALL);
     mode.shed = SHED_BY_LAW;
@@ -214,7 +215,6 @@ enum status event_next(struct state *state, struct residual *residual, struct in
     state->event++;
     state->t = fish_event_time(school, state->event);
 
-    // shed
     const int jumps = school->shedding == SHEDDING_IMPULSIVE;
     if (jumps) diagnostics_before_jump(residual, state);
     if (jumps) {
