@@ -164,6 +164,7 @@ FIGURES = {
     "validation": ["scripts/validation.py validation.png"],
     "real_time": ["scripts/measure/performance.py --picture real_time.png"],
     "best_gait": ["doc/examples/best_gait.py --figure best_gait.png"],
+    "keep_together": ["doc/examples/keep_together.py --figure keep_together.png"],
     "hold_place": ["doc/examples/hold_place.py --figure hold_place.png"],
 }
 # paths in doc/figures without their ending

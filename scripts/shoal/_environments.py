@@ -54,7 +54,7 @@ class _Box:
 
 _make_box = _from("gymnasium.spaces", "Box", _Box)
 
-_KEYS = {"bias": b"control.bias", "amplitude": b"wave.amplitude", "frequency": b"wave.frequency"}
+_KEYS = {"bias": b"control.bias", "amplitude": b"wave.amplitude", "frequency": b"wave.frequency", "heave": b"motion.heave"}
 _SENSORS = ((0.5, 0.0), (0.0, 0.3), (0.0, -0.3))
 _RENDER_MODES = ("rgb_array", "html")
 
@@ -94,6 +94,8 @@ class _Swimmer:
             raise TypeError('actions and observations are tuples of names, ("bias",)')
         for name in actions:
             choice_of(name, list(_KEYS), "an action")
+            if name not in usual and not isinstance(actions, Mapping):
+                raise CaseError(f"{name} has no usual bounds: give them, actions={{{name!r}: (0.1, 0.2)}}")
         self.actions = {name: self._bounds(name, actions[name]) if isinstance(actions, Mapping) else usual[name]
                         for name in actions}
         self.observations = [choice_of(name, list(self._SEEN), "an observation") for name in observations]
@@ -452,8 +454,8 @@ class SwimEnv(_Swim, _from("gymnasium", "Env", object)):
     """One fish that learns, by the protocol of Gymnasium.
 
     case, assignments: as for shoal.Run; an episode ends (is truncated) at time.end. fish: the learning fish, by number or
-    name. actions: names of bias, amplitude, frequency, or a dict with bounds {"bias": (-0.3, 0.3)}; an action outside
-    the box is refused. observations: names of velocity, heading, curvature, muscle, flow, goal, closing, neighbours,
+    name. actions: names of bias, amplitude, frequency, or a dict with bounds {"bias": (-0.3, 0.3)}, for heave (motion.heave, m)
+    too; an action outside the box is refused. observations: names of velocity, heading, curvature, muscle, flow, goal, closing, neighbours,
     sight, action. reward: weights of speed, cost_of_transport, course, goal, or a function of the swimmer. goal: a point (x, y),
     m, ("leader", (1.2, 0)), a place beside a fish, or a function of the time, s, for a goal that moves. course: desired course, degree. sensors: places (n, 2) for flow,
     from the nose, in lengths. act_every: time between actions, s, a multiple of time.shedding_interval. vary: bounds of

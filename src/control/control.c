@@ -41,6 +41,14 @@ double lead_rate(const struct lead *lead, double t) {
     return given[1] / lead->ramp;
 }
 
+double lead_change_of_rate(const struct lead *lead, double t) {
+    const double q = lead_progress(lead, t);
+    if (q >= 1) return 0;
+    double given[LEAD_GIVEN];
+    lead_derivatives(lead, q, given);
+    return given[2] / (lead->ramp * lead->ramp);
+}
+
 double lead_integral(const struct lead *lead, double t) {
     const double q = lead_progress(lead, t), end = q < 1 ? q : 1;
     double integral = 0;
@@ -386,6 +394,12 @@ struct fish_gait control_gait(const struct fish *fish, const struct control_memo
     return gait;
 }
 
+void control_heave(const struct fish *fish, const struct control_memory *memory, double t, double heave[3]) {
+    heave[0] = fish->motion.heave + lead_value(&memory->heave, t);
+    heave[1] = lead_rate(&memory->heave, t);
+    heave[2] = lead_change_of_rate(&memory->heave, t);
+}
+
 void control_set(const struct fish *fish, struct control_memory *memory, enum control_set which, double t,
                  double value) {
     const double ramp = fish->control.ramp;
@@ -393,6 +407,7 @@ void control_set(const struct fish *fish, struct control_memory *memory, enum co
         case CONTROL_SET_AMPLITUDE: lead_change(&memory->amplitude, t, ramp, value / fish->amplitude - 1); return;
         case CONTROL_SET_FREQUENCY: lead_change(&memory->frequency, t, ramp, value - fish->omega / (2 * M_PI)); return;
         case CONTROL_SET_BIAS: lead_change(&memory->bias, t, ramp, value - fish->control.bias); return;
+        case CONTROL_SET_HEAVE: lead_change(&memory->heave, t, ramp, value - fish->motion.heave); return;
         case CONTROL_SET_HEADING: break;
     }
 

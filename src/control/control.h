@@ -22,9 +22,10 @@ struct lead {
     double integral;           /* of the value from 0 to start */
 };
 
-/* Value, rate, and time integral since t = 0, at time t, at or after the last change. */
+/* Value, first and second derivative, and time integral since t = 0, at time t, at or after the last change. */
 double lead_value(const struct lead *lead, double t);
 double lead_rate(const struct lead *lead, double t);
+double lead_change_of_rate(const struct lead *lead, double t);
 double lead_integral(const struct lead *lead, double t);
 
 /* Start a change to target at time t, within ramp seconds. From rest the change is value + (target - value) S(q) with S
@@ -50,6 +51,7 @@ struct control_memory {
 
     /* values set from outside; initially 0 */
     struct lead amplitude, frequency, bias;      /* offsets from the case: relative to the amplitude; Hz; 1 */
+    struct lead heave;                           /* offset from motion.heave, m */
     struct lead heading;                         /* if has_heading, replaces the table of the case, rad */
     double waypoints[2 * CONTROL_MAX_WAYPOINTS]; /* if has_waypoints, replaces the waypoints of the case: (x, y), m */
     double set_out[2];                           /* position of the nose at that time, m */
@@ -81,10 +83,20 @@ double control_law(const struct fish *fish, const struct control_memory *memory,
 /* The gait at time t: the gait of the case with the values set from outside. */
 struct fish_gait control_gait(const struct fish *fish, const struct control_memory *memory, double t);
 
+/* Amplitude of the heave of the prescribed motion at time t, m, with the value set from outside, and its first and
+ * second derivative. */
+void control_heave(const struct fish *fish, const struct control_memory *memory, double t, double heave[3]);
+
 /* Set a value from outside, at the event at time t; the value changes within fish->control.ramp with three continuous
  * derivatives. Amplitude: in the unit of the case, the amplitude of the case is not 0; frequency: Hz; bias: of law
- * none; desired heading: rad, by the shorter turn, without waypoints only. */
-enum control_set { CONTROL_SET_AMPLITUDE, CONTROL_SET_FREQUENCY, CONTROL_SET_BIAS, CONTROL_SET_HEADING };
+ * none; heave: m; desired heading: rad, by the shorter turn, without waypoints only. */
+enum control_set {
+    CONTROL_SET_AMPLITUDE,
+    CONTROL_SET_FREQUENCY,
+    CONTROL_SET_BIAS,
+    CONTROL_SET_HEAVE,
+    CONTROL_SET_HEADING
+};
 void control_set(const struct fish *fish, struct control_memory *memory, enum control_set which, double t,
                  double value);
 

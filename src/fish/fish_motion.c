@@ -113,14 +113,16 @@ void fish_prescribed_direction(const struct fish *fish, double t, double directi
     *rate = heading[1];
 }
 
-void fish_prescribed_node(const struct fish *fish, int k, double t, double position[2], double velocity[2],
-                          double acceleration[2]) {
+void fish_prescribed_node(const struct fish *fish, const double heave[3], int k, double t, double position[2],
+                          double velocity[2], double acceleration[2]) {
     const struct motion *motion = &fish->motion;
     const double ahead[2] = {cos(fish->start_heading), sin(fish->start_heading)}, left[2] = {-ahead[1], ahead[0]};
     const double omega = motion->omega;
     const double angle = omega * t + motion->phase;
-    const double heave = motion->heave * sin(angle), heave_rate = motion->heave * omega * cos(angle);
-    const double heave_change = -omega * omega * heave;
+    const double of_case[3] = {motion->heave, 0, 0}, *const a = heave ? heave : of_case;
+    const double s = sin(angle), c = omega * cos(angle);
+    const double height = a[0] * s, height_rate = a[0] * c + a[1] * s;
+    const double height_change = -omega * omega * height + 2 * a[1] * c + a[2] * s;
     double heading[3];
     prescribed_heading(fish, t, heading);
     const double rate = heading[1], rate_change = heading[2];
@@ -128,18 +130,18 @@ void fish_prescribed_node(const struct fish *fish, int k, double t, double posit
     const double arm = motion->pivot - fish->arc[k];
 
     for (int i = 0; i < 2; i++) {
-        position[i] =
-            fish->start_position[i] + (motion->speed * t - motion->pivot) * ahead[i] + heave * left[i] + arm * along[i];
-        velocity[i] = motion->speed * ahead[i] + heave_rate * left[i] + arm * rate * across[i];
-        acceleration[i] = heave_change * left[i] + arm * (rate_change * across[i] - rate * rate * along[i]);
+        position[i] = fish->start_position[i] + (motion->speed * t - motion->pivot) * ahead[i] + height * left[i] +
+                      arm * along[i];
+        velocity[i] = motion->speed * ahead[i] + height_rate * left[i] + arm * rate * across[i];
+        acceleration[i] = height_change * left[i] + arm * (rate_change * across[i] - rate * rate * along[i]);
     }
 }
 
-void fish_prescribe(const struct fish *fish, bool at_start, double t, double *y) {
+void fish_prescribe(const struct fish *fish, const double heave[3], bool at_start, double t, double *y) {
     const int n = at_start ? fish->n_nodes : fish_n_prescribed(fish);
     for (int k = 0; k < n; k++) {
         double position[2], velocity[2], acceleration[2];
-        fish_prescribed_node(fish, k, t, position, velocity, acceleration);
+        fish_prescribed_node(fish, heave, k, t, position, velocity, acceleration);
         for (int i = 0; i < 2; i++) {
             if (!at_start && !fish_is_prescribed(fish, k, i)) continue;
             y[fish->at.x + i * fish->n_nodes + k] = position[i];
@@ -154,7 +156,7 @@ void fish_start(const struct fish *fish, double *y) {
     double *const x = y + fish->at.x, *const z = y + fish->at.y;
     if (fish->motion.prescribed != PRESCRIBED_NONE) {
         // the free nodes behind a prescribed head start with the rigid motion of the head
-        fish_prescribe(fish, true, 0, y);
+        fish_prescribe(fish, NULL, true, 0, y);
         return;
     }
 

@@ -37,7 +37,8 @@ double fish_natural_angle(const struct fish *fish, int j, const struct fish_gait
 double fish_largest_turn(const struct fish *fish, double amplitude, double bias);
 
 /* The prescribed rigid motion of all nodes of a fish or of the head: straight, heaving and pitching.
- * doc/model.md, section 5. */
+ * doc/model.md, section 5. heave: amplitude of the heave, m, and its first and second derivative in time, as
+ * control_heave (control/control.h) gives them with a value set from outside; NULL: the amplitude of the case. */
 
 /* The number of nodes, from the nose on, with prescribed motion, at least across the heading: 0, 1, 2 or all. */
 int fish_n_prescribed(const struct fish *fish);
@@ -51,12 +52,12 @@ static inline bool fish_is_prescribed(const struct fish *fish, int k, int i) {
 void fish_prescribed_direction(const struct fish *fish, double t, double direction[2], double *rate);
 
 /* Position, velocity, acceleration of prescribed node k at time t; each an array of x and y. */
-void fish_prescribed_node(const struct fish *fish, int k, double t, double position[2], double velocity[2],
-                          double acceleration[2]);
+void fish_prescribed_node(const struct fish *fish, const double heave[3], int k, double t, double position[2],
+                          double velocity[2], double acceleration[2]);
 
 /* Write the positions and velocities of the prescribed motion at time t into the vector of all unknowns: prescribed
  * components only; at_start: all nodes. */
-void fish_prescribe(const struct fish *fish, bool at_start, double t, double *y);
+void fish_prescribe(const struct fish *fish, const double heave[3], bool at_start, double t, double *y);
 
 /* The initial state of a fish: natural shape, or straight shape of a prescribed motion, and a uniform
  * velocity. doc/model.md, sections 4 and 5. */

@@ -284,7 +284,7 @@ void flow_place(struct flow *flow, const struct state *state, double t, const do
         if (flow->is_steady) {
             // the wake leaves in the direction of the stream relative to the body, which is held at the first node
             double place[2], velocity[2], acceleration[2], stream[2];
-            fish_prescribed_node(fish, 0, t, place, velocity, acceleration);
+            fish_prescribed_node(fish, NULL, 0, t, place, velocity, acceleration);
             flow_external(school, t, place[0], place[1], &stream[0], &stream[1]);
             for (int i = 0; i < 2; i++) stream[i] -= velocity[i];
             const double speed = hypot(stream[0], stream[1]), reach = flow_steady_reach(school, fish);

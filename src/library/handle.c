@@ -197,10 +197,10 @@ static const struct set_key {
     const char *key;
     bool is_number;
 } keys[] = {
-    {"wave.amplitude", true},          {"wave.frequency", true},     {"control.bias", true},
-    {"control.desired_heading", true}, {"control.waypoints", false},
+    {"wave.amplitude", true}, {"wave.frequency", true},          {"control.bias", true},
+    {"motion.heave", true},   {"control.desired_heading", true}, {"control.waypoints", false},
 };
-enum set_key_index { AMPLITUDE, FREQUENCY, BIAS, DESIRED_HEADING, WAYPOINTS, N_KEYS };
+enum set_key_index { AMPLITUDE, FREQUENCY, BIAS, HEAVE, DESIRED_HEADING, WAYPOINTS, N_KEYS };
 
 /* Change the control memory of a fish, under the conditions of the key. */
 static enum status change_memory(const struct fish *fish, const struct state *state, enum set_key_index index, int n,
@@ -227,6 +227,16 @@ static enum status change_memory(const struct fish *fish, const struct state *st
             }
             control_set(fish, memory, CONTROL_SET_BIAS, state->t, values[0]);
             break;
+        case HEAVE:
+            if (fish->motion.prescribed == PRESCRIBED_NONE || !(fish->motion.omega > 0)) {
+                return status_fail(
+                    STATUS_CASE,
+                    "%s: the motion of %s is not prescribed, or has no frequency: set motion.prescribed and "
+                    "motion.frequency in the case",
+                    key, name);
+            }
+            control_set(fish, memory, CONTROL_SET_HEAVE, state->t, values[0]);
+            break;
         case DESIRED_HEADING:
             if (law == CONTROL_NONE) {
                 return status_fail(STATUS_CASE, "%s: %s has no control law: choose a control.law", key, name);
@@ -252,7 +262,7 @@ enum status handle_set_key(const struct simulation *simulation, int fish, const 
     if (found == N_KEYS) {
         return status_fail(STATUS_CASE,
                            "'%s' cannot be set: only wave.amplitude, wave.frequency, control.bias, "
-                           "control.desired_heading and control.waypoints can",
+                           "motion.heave, control.desired_heading and control.waypoints can",
                            key);
     }
     const bool is_number = keys[found].is_number;

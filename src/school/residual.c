@@ -319,9 +319,11 @@ static void evaluate_fish(struct residual *residual, const struct residual_mode 
 
     // where nodes are prescribed, position, velocity and acceleration are given, and the law of motion yields the
     // reaction
+    double heave[3];
+    control_heave(fish, &state->control[f], t, heave);
     for (int k = 0; k < fish_n_prescribed(fish); k++) {
         double position[2], velocity[2], acceleration[2];
-        fish_prescribed_node(fish, k, t, position, velocity, acceleration);
+        fish_prescribed_node(fish, heave, k, t, position, velocity, acceleration);
         for (int i = 0; i < 2; i++) {
             if (!fish_is_prescribed(fish, k, i)) continue;
             const int node = i * fish->n_nodes + k;

@@ -158,7 +158,7 @@ enum status equilibrium_solve(struct equilibrium *e) {
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         double position[2], velocity[2], acceleration[2];
-        fish_prescribed_node(fish, 0, state->t, position, velocity, acceleration);
+        fish_prescribed_node(fish, NULL, 0, state->t, position, velocity, acceleration);
         for (int i = 0; i < 2 * fish->n_nodes; i++) {
             state->y[fish->at.vx + i] = state->yp[fish->at.x + i] = velocity[i / fish->n_nodes];
             state->y[fish->at.ax + i] = 0;

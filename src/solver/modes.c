@@ -100,7 +100,7 @@ static enum status modes_evaluate(const struct modes *modes, double tau, double 
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         double position[2], velocity[2], acceleration[2];
-        fish_prescribed_node(fish, 0, state->t, position, velocity, acceleration);
+        fish_prescribed_node(fish, NULL, 0, state->t, position, velocity, acceleration);
         for (int i = 0; i < 2 * fish->n_nodes; i++) modes->y[fish->at.x + i] += tau * velocity[i / fish->n_nodes];
     }
     const enum status status =

@@ -234,10 +234,12 @@ static enum status find_accelerations(struct ode_rhs *d, int f, double t, double
     }
 
     // where an acceleration is prescribed, its row and column become those of the identity
+    double heave[3];
+    control_heave(fish, &d->residual->state->control[f], t, heave);
     for (int given = 0; given < 2 * fish_n_prescribed(fish); given++) {
         if (!fish_is_prescribed(fish, given / 2, given % 2)) continue;
         double position[2], velocity[2], acceleration[2];
-        fish_prescribed_node(fish, given / 2, t, position, velocity, acceleration);
+        fish_prescribed_node(fish, heave, given / 2, t, position, velocity, acceleration);
         for (int other = given - BANDWIDTH + 1; other < given + BANDWIDTH; other++) {
             if (other < 0 || other >= n) continue;
             double *const of_pair = other > given ? mass_entry(band, other, given) : mass_entry(band, given, other);
@@ -266,7 +268,11 @@ static enum status find_accelerations(struct ode_rhs *d, int f, double t, double
 enum status ode_rhs_rates(struct ode_rhs *d, double t, double *y, double *yp) {
     const struct school *school = d->residual->school;
     const struct state *const state = d->residual->state;
-    for (int f = 0; f < school->n_fish; f++) fish_prescribe(&school->fish[f], 0, t, y);
+    for (int f = 0; f < school->n_fish; f++) {
+        double heave[3];
+        control_heave(&school->fish[f], &state->control[f], t, heave);
+        fish_prescribe(&school->fish[f], heave, 0, t, y);
+    }
     for (int i = 0; i < school->n_unknowns; i++) {
         if (!isfinite(y[i])) return status_fail(STATUS_RETRY, "unknown %d is not finite at t = %g s", i, t);
     }

@@ -184,6 +184,7 @@ const struct state_row state_table[] = {
     {"control.amplitude", OF_CONTROL(STATE_REAL, amplitude), STATE_NO_ARRAY},
     {"control.frequency", OF_CONTROL(STATE_REAL, frequency), STATE_NO_ARRAY},
     {"control.bias", OF_CONTROL(STATE_REAL, bias), STATE_NO_ARRAY},
+    {"control.heave", OF_CONTROL(STATE_REAL, heave), STATE_NO_ARRAY},
     {"control.has_heading", OF_CONTROL(STATE_INTEGER, has_heading), STATE_NO_ARRAY},
     {"control.heading", OF_CONTROL(STATE_REAL, heading), STATE_NO_ARRAY},
     {"control.has_waypoints", OF_CONTROL(STATE_INTEGER, has_waypoints), STATE_NO_ARRAY},

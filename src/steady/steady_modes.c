@@ -31,7 +31,7 @@ static void hold_bodies(const struct simulation *simulation, const struct state 
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         double position[2], velocity[2], acceleration[2];
-        fish_prescribed_node(fish, 0, equilibrium->t, position, velocity, acceleration);
+        fish_prescribed_node(fish, NULL, 0, equilibrium->t, position, velocity, acceleration);
         for (int i = 0; i < 2 * fish->n_nodes; i++) {
             state->y[fish->at.x + i] += (t - equilibrium->t) * velocity[i / fish->n_nodes];
         }
@@ -45,7 +45,7 @@ enum status steady_modes_find(struct simulation *simulation, struct steady_value
 
     // the number of events until the wakes are long enough; 0 without a stream
     double stream[2], position[2], velocity[2], acceleration[2];
-    fish_prescribed_node(fish, 0, 0, position, velocity, acceleration);
+    fish_prescribed_node(fish, NULL, 0, 0, position, velocity, acceleration);
     flow_external(school, 0, position[0], position[1], &stream[0], &stream[1]);
     const double speed = hypot(stream[0] - velocity[0], stream[1] - velocity[1]);
     const double duration = fmin(school->lifetime, wake_lengths * fish->length / speed);

@@ -103,7 +103,7 @@ enum status steady_start_shapes(struct arena *arena, const char *path, const str
         }
 
         // rotate and scale the shape so that edge 0 coincides with edge 0 of a straight body at the nose
-        fish_prescribe(fish, 1, 0, y);
+        fish_prescribe(fish, NULL, 1, 0, y);
         fish_prescribed_direction(fish, 0, direction, &rate);
         const double edge[2] = {places[2] - places[0], places[3] - places[1]}, length = hypot(edge[0], edge[1]);
         const double factor = fish->edge_length / (length * length);

@@ -43,8 +43,8 @@ enum status steady_static_refuse(const struct school *school) {
                                fish->name, fish->ramp);
         }
 
-        fish_prescribed_node(&school->fish[0], 0, 0, position, first, acceleration);
-        fish_prescribed_node(fish, 0, 0, position, velocity, acceleration);
+        fish_prescribed_node(&school->fish[0], NULL, 0, 0, position, first, acceleration);
+        fish_prescribed_node(fish, NULL, 0, 0, position, velocity, acceleration);
         if (fabs(velocity[0] - first[0]) + fabs(velocity[1] - first[1]) > 0) {
             return status_fail(STATUS_CASE,
                                "%s and %s move at different velocities: give both fish the same motion.speed",
@@ -170,7 +170,7 @@ static enum status growth_from_rest(struct growth *growth) {
         const struct fish *const fish = &school->fish[f];
         const struct fish_gait gait = fish_own_gait(fish, 0);
         double direction[2], rate;
-        fish_prescribe(fish, 1, 0, y);
+        fish_prescribe(fish, NULL, 1, 0, y);
         fish_prescribed_direction(fish, 0, direction, &rate);
         double angle = atan2(direction[1], direction[0]);
         for (int k = 1; k < fish->n_nodes; k++) {

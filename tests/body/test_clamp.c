@@ -131,8 +131,8 @@ TEST(given_direction_is_that_of_the_prescribed_nodes) {
     const struct fish *fish = setup.school->fish;
     const double h = 1e-5;
     double a[2], b[2], direction[3][2], rate, ignored[2];
-    fish_prescribed_node(fish, 0, 0.3, a, ignored, ignored);
-    fish_prescribed_node(fish, 6, 0.3, b, ignored, ignored);
+    fish_prescribed_node(fish, NULL, 0, 0.3, a, ignored, ignored);
+    fish_prescribed_node(fish, NULL, 6, 0.3, b, ignored, ignored);
     for (int i = 0; i < 3; i++) fish_prescribed_direction(fish, 0.3 + (i - 1) * h, direction[i], &rate);
     fish_prescribed_direction(fish, 0.3, direction[1], &rate);
     for (int i = 0; i < 2; i++) {

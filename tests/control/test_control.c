@@ -1,6 +1,7 @@
 /* test_control.c: headings and the laws for the bias: doc/model.md, section 11. */
 #include "base/mathematics.h"
 #include "control/control.h"
+#include "fish/fish_motion.h"
 #include "near.h"
 #include "school.h"
 
@@ -438,6 +439,37 @@ TEST(values_that_are_set_are_reached_after_the_ramp) {
     control_residual(fish, memory, 3.5, 0, setup.state->y, setup.value);
     NEAR(setup.value[fish->at.phi0], 0.1, 1e-14, 0);
     NEAR(control_largest_bias(fish, memory), 0.1, 1e-15, 0);
+}
+
+TEST(a_heave_that_is_set_has_the_accelerations_of_its_motion) {
+    struct setup setup =
+        setup_of(SMALL
+                 "fish: [{wave: {amplitude: 0}, control: {ramp: 0.5}, motion: {prescribed: all, heave: "
+                 "0.15, frequency: 1, phase: 30, speed: 0}}]\n");
+    const struct fish *const fish = setup.school->fish;
+    struct control_memory *const memory = &setup.state->control[0];
+    control_set(fish, memory, CONTROL_SET_HEAVE, 3, 0.25);
+    double heave[3];
+    control_heave(fish, memory, 3.25, heave);
+    NEAR(heave[0], 0.2, 1e-14, 0);
+    control_heave(fish, memory, 3.5, heave);
+    NEAR(heave[0], 0.25, 1e-14, 0);
+    NEAR(heave[1], 0, 0, 0);
+
+    // velocity and acceleration are the differences of the position, also within a second ramp that begins in the first
+    control_set(fish, memory, CONTROL_SET_HEAVE, 3.2, 0.1);
+    const double h = 1e-4;
+    for (double t = 3.21; t < 3.8; t += 0.1) {
+        double p[3][2], v[3][2], a[3][2];
+        for (int i = 0; i < 3; i++) {
+            control_heave(fish, memory, t + (i - 1) * h, heave);
+            fish_prescribed_node(fish, heave, 0, t + (i - 1) * h, p[i], v[i], a[i]);
+        }
+        for (int d = 0; d < 2; d++) {
+            NEAR(v[1][d], (p[2][d] - p[0][d]) / (2 * h), 1e-6, 0);
+            NEAR(a[1][d], (v[2][d] - v[0][d]) / (2 * h), 1e-4, 0);
+        }
+    }
 }
 
 TEST(rates_of_a_gait_that_changes_are_those_of_its_values) {

@@ -16,7 +16,7 @@ TEST(prescribed_velocity_and_acceleration_are_derivatives) {
     const double h = 1e-4;
     for (int k = 0; k < fish->n_nodes; k++) {
         double p[3][2], v[3][2], a[3][2];
-        for (int i = 0; i < 3; i++) fish_prescribed_node(fish, k, 0.37 + (i - 1) * h, p[i], v[i], a[i]);
+        for (int i = 0; i < 3; i++) fish_prescribed_node(fish, NULL, k, 0.37 + (i - 1) * h, p[i], v[i], a[i]);
         for (int i = 0; i < 2; i++) {
             // truncation h^2/6 omega^3 with omega = 8
             NEAR(v[1][i], (p[2][i] - p[0][i]) / (2 * h), 1e-6, 0);
@@ -33,12 +33,12 @@ TEST(prescribed_body_is_straight_and_turns_about_its_pivot) {
     const struct fish *fish = &setup.school->fish[0];
     // a quarter period on: heave and pitch are largest; left of the heading 180 degrees is downwards
     double p[2], v[2], a[2], q[2];
-    fish_prescribed_node(fish, 1, 0.25, p, v, a);
+    fish_prescribed_node(fish, NULL, 1, 0.25, p, v, a);
     NEAR(p[0], 1 - 0.5 + 0.25, 1e-14, 0);
     NEAR(p[1], 1 - 0.2, 1e-14, 0);
     NEAR(v[0], -2, 1e-14, 0);
     NEAR(v[1], 0, 1e-14, 0);
-    fish_prescribed_node(fish, 4, 0.25, q, v, a);
+    fish_prescribed_node(fish, NULL, 4, 0.25, q, v, a);
     // the body extends backwards from the pivot: the heading 205 degrees turned round
     NEAR(q[0] - p[0], 0.75 * cos(25 * pi / 180), 1e-14, 0);
     NEAR(q[1] - p[1], 0.75 * sin(25 * pi / 180), 1e-14, 0);
@@ -54,8 +54,8 @@ TEST(pitch_is_its_phase_before_heave) {
     const double t[] = {0, 0.25}, pitch[] = {25 * pi / 180, 0}, heave[] = {0, 0.2};
     for (int i = 0; i < 2; i++) {
         double nose[2], tail[2], v[2], a[2];
-        fish_prescribed_node(fish, 0, t[i], nose, v, a);
-        fish_prescribed_node(fish, fish->n_nodes - 1, t[i], tail, v, a);
+        fish_prescribed_node(fish, NULL, 0, t[i], nose, v, a);
+        fish_prescribed_node(fish, NULL, fish->n_nodes - 1, t[i], tail, v, a);
         NEAR(atan2(nose[1] - tail[1], nose[0] - tail[0]), pitch[i], 1e-15, 0);
         // the pivot is the nose
         NEAR(nose[1], heave[i], 1e-15, 0);

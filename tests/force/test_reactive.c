@@ -120,7 +120,7 @@ static void forces_on_plate(const char *motion, double t, double force[7][2]) {
     double *const y = setup.state->y;
     for (int k = 0; k < fish->n_nodes; k++) {
         double place[2], velocity[2], acceleration[2];
-        fish_prescribed_node(fish, k, t, place, velocity, acceleration);
+        fish_prescribed_node(fish, NULL, k, t, place, velocity, acceleration);
         for (int i = 0; i < 2; i++) {
             y[edge_place(fish, i, k)] = place[i];
             y[edge_velocity(fish, i, k)] = velocity[i];

@@ -122,6 +122,27 @@ static void refused(const struct simulation *simulation, const char *key, int n,
     assert_memory_equal(&before, &simulation->state->control[0], sizeof before);
 }
 
+TEST(a_heave_that_is_set_moves_the_plate_without_a_restart) {
+    struct simulation *const simulation =
+        school_simulation(SMALL
+                          "fish: [{wave: {amplitude: 0, frequency: 0}, control: {ramp: 0.3}, start: {speed: 0},\n"
+                          "motion: {prescribed: all, heave: 0.1, frequency: 1, phase: 90, speed: 0}}]\n");
+    const struct fish *const fish = simulation->school->fish;
+    const double pi = acos(-1), *const y = simulation->state->y;
+    school_run(simulation, 0.6);
+    set(simulation, "motion.heave", 0.2);
+    school_run(simulation, 0.7);
+    // a third of the ramp; heave cos(2 pi t) across the heading
+    double heave[3];
+    control_heave(fish, simulation->state->control, 0.7, heave);
+    ABOVE(heave[0], 0.11);
+    BELOW(heave[0], 0.15);
+    NEAR(fabs(y[fish->at.y]), fabs(heave[0] * cos(2 * pi * 0.7)), 1e-9, 0);
+    school_run(simulation, 1);
+    NEAR(fabs(y[fish->at.y]), 0.2, 1e-9, 0);
+    NEAR(y[fish->at.vy], 0, 1e-9, 0);
+}
+
 TEST(what_has_no_use_is_refused) {
     struct simulation *simulation = school_simulation(SMALL "fish: [{}]\n");
     refused(simulation, "wave.number", 1, 1, "'wave.number' cannot be set");
@@ -132,6 +153,7 @@ TEST(what_has_no_use_is_refused) {
     refused(simulation, "wave.frequency", 0, 0.1, "0 numbers: give one");
     refused(simulation, "wave.frequency", 1, -0.1, "cannot be negative");
     refused(simulation, "control.desired_heading", 1, 90, "has no control law");
+    refused(simulation, "motion.heave", 1, 0.1, "is not prescribed, or has no frequency");
     refused(simulation, "control.waypoints", 2, 1, "needs 'law: course'");
     simulation = school_simulation(SMALL "fish: [{wave: {amplitude: 0}, control: {waypoints: [[-3, 0]]}}]\n");
     refused(simulation, "wave.amplitude", 1, 0.1, "in the case is 0: give an initial amplitude");

@@ -1244,6 +1244,13 @@ class Examples(unittest.TestCase):
         np.testing.assert_array_equal(policy, again)
         hold_place.draw("hold_place.png", history, *([hold_place.episode(policy, 1)[1]] for _ in range(2)))
 
+    def test_an_unstable_school_is_held_by_the_amplitude_of_a_plate(self):
+        keep_together = example("keep_together")
+        keep_together.CASE["time"]["end"] = 12
+        away = [keep_together.swim(3.816, 7.235, is_controlled)[1] for is_controlled in (False, True)]
+        self.assertGreater(abs(away[0][-1]), 1)
+        self.assertLess(abs(away[1][-1]), 0.1)
+
     def test_differences_of_the_cost_of_a_gait_are_smooth(self):
         best_gait = example("best_gait")
         best_gait.BEATS = 3

@@ -388,10 +388,10 @@ TEST(rows_of_prescribed_nodes_vanish_on_their_motion_only) {
         "frequency: 1.3}}]\n");
     const struct fish *const fish = setup.school->fish;
     double *const y = setup.state->y;
-    fish_prescribe(fish, 1, setup.t, y);
+    fish_prescribe(fish, NULL, 1, setup.t, y);
     for (int k = 0; k < fish->n_nodes; k++) {
         double position[2], velocity[2], acceleration[2];
-        fish_prescribed_node(fish, k, setup.t, position, velocity, acceleration);
+        fish_prescribed_node(fish, NULL, k, setup.t, position, velocity, acceleration);
         y[fish->at.ax + k] = acceleration[0];
         y[fish->at.ay + k] = acceleration[1];
     }

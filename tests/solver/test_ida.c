@@ -28,7 +28,7 @@ TEST(a_body_with_prescribed_nodes_follows_the_given_motion) {
             school_ok(simulate_step(simulation));
             for (int k = 0; k < fish_n_prescribed(fish); k++) {
                 double x[2], v[2], a[2];
-                fish_prescribed_node(fish, k, simulation->state->t, x, v, a);
+                fish_prescribed_node(fish, NULL, k, simulation->state->t, x, v, a);
                 const double got[6] = {y[fish->at.x + k],  y[fish->at.y + k],  y[fish->at.vx + k],
                                        y[fish->at.vy + k], y[fish->at.ax + k], y[fish->at.ay + k]};
                 const double want[6] = {x[0], x[1], v[0], v[1], a[0], a[1]};

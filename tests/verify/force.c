@@ -159,7 +159,7 @@ static void force_on_plate(const char *motion, double t, double force[2], double
     double *const y = simulation->state->y, *const value = simulation->residual->scratch;
     for (int k = 0; k < fish->n_nodes; k++) {
         double place[2], velocity[2], acceleration[2];
-        fish_prescribed_node(fish, k, t, place, velocity, acceleration);
+        fish_prescribed_node(fish, NULL, k, t, place, velocity, acceleration);
         for (int i = 0; i < 2; i++) {
             y[edge_place(fish, i, k)] = place[i];
             y[edge_velocity(fish, i, k)] = velocity[i];
