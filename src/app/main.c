@@ -9,6 +9,7 @@
 #include "base/arena.h"
 #include "base/text.h"
 #include "base/version.h"
+#include "result/durable.h"
 
 // Let waiting threads spin for microseconds and then sleep, unless the environment sets a policy. The default of OpenMP
 // is to spin for milliseconds; if threads share a core with other programs, each of the thousands of short loops of a
@@ -168,7 +169,7 @@ static enum status main_help(const struct request *request) {
     return refuse_command(request->positional);
 }
 
-/* Parse the command line and run the command. */
+/* Parse the command line and run the command. This is the boundary of the program (arena.h). */
 static enum status main_choose(int argc, char **argv, struct arena **arena) {
     MEMORY_BOUNDARY(STATUS_MEMORY);
     *arena = arena_create(NULL, "the command");
@@ -231,6 +232,7 @@ int main(int argc, char **argv) {
     struct arena *arena = NULL;
     enum status status = main_choose(argc, argv, &arena);
     arena_free(arena);
+    durable_remove_parts();
     if (status == STATUS_OK && (fflush(stdout) != 0 || ferror(stdout))) {
         main_end_by_pipe();
         status = status_fail(STATUS_FILE, "cannot write to standard output");

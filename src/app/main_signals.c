@@ -94,7 +94,7 @@ static volatile sig_atomic_t is_guarded;
 
 static void on_exit_of_a_library(void) {
     if (!is_guarded) return;
-    durable_claim_give_up();
+    durable_remove_parts();
     fputs("shoal: error: a library ended the program: out of memory or too many threads\n", stderr);
     _exit(status_exit_code(STATUS_MEMORY));
 }

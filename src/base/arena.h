@@ -4,14 +4,17 @@
  * all pieces, all children and all objects of libraries (arena_defer), the newest first. A part of an owner takes the
  * arena of the owner and has no function that frees it.
  *
- * A request for memory never fails for the caller. A lack of memory sets the message and ends the innermost boundary of
- * the thread: the function with MEMORY_BOUNDARY returns. Boundaries are main, the functions of include/shoal.h, and the
- * functions that complete a file after a lack of memory. Boundaries nest; each thread has its own.
+ * A request for memory never fails for the caller. A lack of memory sets the message and jumps to the boundary of the
+ * thread: the function with MEMORY_BOUNDARY returns. There are three boundaries, each at an entry:
  *
- *     enum status command(struct arena *arena) {          on a lack of memory anywhere below,
- *         MEMORY_BOUNDARY(STATUS_MEMORY);                 command returns STATUS_MEMORY,
- *         ...                                             and the caller frees the arena
- *     }
+ *     main_choose (app/main.c)      the program: it prints the message and ends with exit code 4
+ *     run_member (study/study.c)    the process of a member of a study, which leaves the message to the study
+ *     handle_call (library)         a function of include/shoal.h, which returns SHOAL_MEMORY
+ *
+ * Between the request and the boundary no code runs, so what must not stay has to be known at the boundary. Memory,
+ * files and objects of libraries belong to an arena that the caller of the boundary frees, or end with the process; the
+ * names of unfinished files are listed by the process (durable_remove_parts); the lock of NetCDF is taken outside of
+ * the boundary. A file on the disk needs nothing: it is whole at every instant, because the process may be killed.
  *
  * No memory is requested in a parallel region, out of which no jump is possible; arena_new asserts it. A jump out of a
  * callback of SUNDIALS leaves objects of SUNDIALS that can only be freed, which is what the owner does. */
@@ -57,7 +60,7 @@ void *arena_take(struct arena *arena, void *object);
 /* Move an arena to another parent, or to none. */
 void arena_move(struct arena *arena, struct arena *parent);
 
-/* End the innermost boundary for a lack of memory of the owner; n_bytes 0: of an unknown size. */
+/* Jump to the boundary for a lack of memory of the owner; n_bytes 0: of an unknown size. */
 _Noreturn void arena_lack(const struct arena *arena, double n_bytes);
 
 /* ---- boundaries */

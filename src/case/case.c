@@ -195,7 +195,6 @@ static void keep_texts(const struct reading *reading) {
 /* Read a case from a file, or from a text that is not NULL. */
 static enum status read_case(struct case_values *values, const char *origin, const char *text, size_t length,
                              const char *folder, int n_assignments, const char *const *assignments) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
     values->arena = arena_create(NULL, "the case");
     struct arena *const arena = arena_create(values->arena, "reading the case");
     struct reading reading = {values, {.arena = arena}, {.arena = arena}};
@@ -232,19 +231,17 @@ void case_free(struct case_values *values) {
 
 // ---- the case of a member
 
-/* Read the case of a member with the assignments of the values, in an arena that the caller frees. */
-static enum status read_member(struct case_values *values, const struct case_values *study, int member,
-                               struct arena **arena) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
-    *arena = arena_create(NULL, "a member of a study");
+enum status case_member(struct case_values *values, const struct case_values *study, int member) {
+    *values = (struct case_values){0};
+    struct arena *const arena = arena_create(study->arena, "a member of a study");
     int n_keys = 0, n = 0;
     for (int a = 0; a < study->n_axes; a++) n_keys += study->sweep[a].n_keys;
     const char **assignments;
-    NEW(*arena, assignments, n_keys + 1);
+    NEW(arena, assignments, n_keys + 1);
     for (int a = 0; a < study->n_axes; a++) {
         const int value = sweep_member_value(study, member, a);
         for (int k = 0; k < study->sweep[a].n_keys; k++) {
-            struct text text = {.arena = *arena};
+            struct text text = {.arena = arena};
             if (sweep_add_assignment(&text, &study->sweep[a], value, k)) assignments[n++] = text.text;
         }
     }
@@ -258,21 +255,13 @@ static enum status read_member(struct case_values *values, const struct case_val
     const char *const text = is_other ? study->error->against : study->common;
     const enum status status = case_parse(values, text, strlen(text), study->name, NULL, n, assignments);
     if (status == STATUS_CASE) {
-        status_fail(STATUS_CASE, "member %d (%s):\n%s", member, sweep_member_text(*arena, study, member),
+        status_fail(STATUS_CASE, "member %d (%s):\n%s", member, sweep_member_text(arena, study, member),
                     status_message());
     }
-    TRY(status);
+    arena_free(arena);
+    if (status != STATUS_OK) return status;
     values->member = member;
     values->text = arena_text(values->arena, "%s", study->text);
     values->study = arena_text(values->arena, "%s", study->merged);
     return STATUS_OK;
-}
-
-enum status case_member(struct case_values *values, const struct case_values *study, int member) {
-    *values = (struct case_values){0};
-    struct arena *arena = NULL;
-    const enum status status = read_member(values, study, member, &arena);
-    if (status != STATUS_OK) case_free(values);
-    arena_free(arena);
-    return status;
 }

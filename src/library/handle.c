@@ -39,8 +39,16 @@ static pthread_once_t forks_once = PTHREAD_ONCE_INIT;
 
 // ---- parts of the public functions
 
+// a jump may have come from anywhere in the computation
+static enum status lack_memory(struct shoal *run) {
+    if (!run) return STATUS_MEMORY;
+    run->is_torn = true;
+    run->has_row = false;
+    return STATUS_MEMORY;
+}
+
 enum status handle_call(struct shoal *run, handle_part *part, const void *data) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
+    MEMORY_BOUNDARY(lack_memory(run));
 
     // the limit belongs to a thread, and the child may have new ones
     if (is_child) omp_set_max_active_levels(0);
@@ -56,25 +64,34 @@ enum status handle_with_netcdf(struct shoal *run, handle_part *part, const void 
 
 _Thread_local const volatile sig_atomic_t *handle_stop;
 
-/* Create a run without a simulation: *arena is set first, then *run. */
-static enum status create_empty(struct arena **arena, struct shoal **run, const struct shoal *of) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
-    *arena = arena_create(NULL, "a run");
+/* A run in the making: the arena is there first, then the run. */
+struct creation {
+    struct arena **arena;
+    struct shoal **run;
+    const struct shoal *of; /* the run of whose case this is another run; NULL: none */
+};
+
+// create a run without a simulation
+static enum status create_empty(struct shoal *run, const void *data) {
+    (void)run;
+    const struct creation *const creation = data;
+    const struct shoal *const of = creation->of;
+    struct arena *const arena = *creation->arena = arena_create(NULL, "a run");
     struct shoal *created;
-    NEW(*arena, created, 1);
-    created->arena = *arena;
+    NEW(arena, created, 1);
+    created->arena = arena;
     created->claim.descriptor[0] = created->claim.descriptor[1] = -1;
     if (of) {
         created->shared = of->shared;
         atomic_fetch_add(&created->shared->n_users, 1);
     } else {
-        struct arena *const of_case = arena_create(*arena, "the case of a run");
+        struct arena *const of_case = arena_create(arena, "the case of a run");
         NEW(of_case, created->shared, 1);
         atomic_init(&created->shared->n_users, 1);
         created->shared->arena = of_case;
         arena_move(of_case, NULL);
     }
-    *run = created;
+    *creation->run = created;
     return STATUS_OK;
 }
 
@@ -94,7 +111,7 @@ enum status handle_create(struct shoal **run, const struct shoal *of, handle_par
     pthread_once(&forks_once, expect_forks);
     struct arena *arena = NULL;
     *run = NULL;
-    enum status status = create_empty(&arena, run, of);
+    enum status status = handle_call(NULL, create_empty, &(struct creation){&arena, run, of});
     if (status == STATUS_OK) status = handle_call(*run, fill, data);
     if (status == STATUS_OK) return STATUS_OK;
     if (*run) {
@@ -152,20 +169,27 @@ enum status handle_evaluate(const struct simulation *simulation) {
 static enum status renew_simulation(struct shoal *run, const void *data) {
     (void)data;
     TRY(simulate_renew(run->simulation));
+    run->is_torn = false;
     return handle_evaluate(run->simulation);
 }
 
 enum status handle_renew(struct shoal *run) {
-    if (run->is_renewed) return STATUS_OK;
+    if (run->is_renewed && !run->is_torn) return STATUS_OK;
     run->has_row = false;
 
     // a restart that ran out of memory leaves no solver
-    if (run->simulation->solver) simulate_count(run->simulation, &run->when_reached);
+    if (run->simulation->solver && !run->is_renewed) simulate_count(run->simulation, &run->when_reached);
 
     const enum status status = handle_call(run, renew_simulation, NULL);
     run->is_renewed = status == STATUS_OK;
     if (status != STATUS_OK) handle_fail(run);
     return status;
+}
+
+enum status handle_mend(struct shoal *run, const char *function) {
+    if (!run->is_torn) return STATUS_OK;
+    TRY(handle_check_alive(run, function));
+    return handle_renew(run);
 }
 
 enum status handle_restore(struct shoal *run, const void *state) {

@@ -37,6 +37,7 @@ struct shoal {
     struct state *before;                  /* state at the last event, during a step that can be stopped; or NULL */
     bool is_renewed;                       /* the integrator has restarted at this event */
     struct integrator_counts when_reached; /* if is_renewed: the counts before the restart */
+    bool is_torn; /* lack of memory has ended a computation: what is not state can only be renewed or freed */
     bool has_failed;
     char failure[1024]; /* message of the step that failed */
     struct record record;
@@ -56,8 +57,10 @@ struct shoal {
 /* A part of a public function. */
 typedef enum status handle_part(struct shoal *run, const void *data);
 
-/* Call a part with a boundary of memory; under the lock of NetCDF, which has a global list of open files that is not
- * thread-safe. Fails as the part, or with STATUS_MEMORY. */
+/* Call a part within the boundary of the library (base/arena.h): every request for memory is made in such a part, and
+ * what has to be undone after a lack of memory is undone by the caller. handle_with_netcdf also holds the lock of
+ * NetCDF, which has a global list of open files that is not thread-safe. Both fail as the part, or with
+ * STATUS_MEMORY. */
 enum status handle_call(struct shoal *run, handle_part *part, const void *data);
 enum status handle_with_netcdf(struct shoal *run, handle_part *part, const void *data);
 
@@ -92,6 +95,9 @@ enum status handle_evaluate(const struct simulation *simulation);
 
 /* Restart the integrator. On failure the run is marked as failed. */
 enum status handle_renew(struct shoal *run);
+
+/* Renew a run that lack of memory has left torn. Fails if a step of the run has failed, or as handle_renew. */
+enum status handle_mend(struct shoal *run, const char *function);
 
 /* Copy a state, of a run with the same case, into the run and restart the integrator: a part for handle_call. */
 enum status handle_restore(struct shoal *run, const void *state);

@@ -73,12 +73,19 @@ int shoal_open_text(struct shoal **run, const char *text, const char *folder, in
 
 // ---- the result file of a run
 
-// forget a closed result file; release its checkpoints and claim
+// a file that lack of memory has left open is closed with the arena
+static enum status free_record(struct shoal *run, const void *data) {
+    (void)data;
+    arena_free(run->checkpoints.arena);
+    run->checkpoints.arena = NULL;
+    return STATUS_OK;
+}
+
+// forget the result file; release its checkpoints and claim
 static void release_record(struct shoal *run) {
     run->record = (struct record){0};
     run->record_path = NULL;
-    arena_free(run->checkpoints.arena);
-    run->checkpoints.arena = NULL;
+    handle_with_netcdf(run, free_record, NULL);
     durable_claim_release(&run->claim);
 }
 
@@ -100,7 +107,8 @@ static enum status close_record(struct shoal *run, const void *failure) {
     const bool has_ended = run->simulation->state->event >= run->simulation->n_events;
     enum status status = has_ended ? STATUS_OK : STATUS_STOPPED;
     if (run->has_failed) status = status_fail(STATUS_SOLVER, "%s", run->failure);
-    if (run->simulation->residual) record_notes_write(run->record.file, run->simulation, "", NULL, NULL);
+    if (run->simulation->residual && !run->is_torn)
+        record_notes_write(run->record.file, run->simulation, "", NULL, NULL);
 
     // record_close returns the status of the run if the file was closed without an error
     const enum status closed = record_close(&run->record, status);
@@ -169,6 +177,7 @@ static enum status return_to_event(struct shoal *run) {
 
 int shoal_step(struct shoal *run) {
     TRY(handle_check_alive(run, __func__));
+    TRY(handle_mend(run, __func__));
     TRY(status_ask(handle_stop));
     if (run->simulation->state->event >= run->simulation->n_events) {
         return status_fail(STATUS_CASE, "%s: the run is at its end, t = %g s: increase time.end", __func__,
@@ -239,18 +248,15 @@ int shoal_set(struct shoal *run, int fish, const char *key, int n, const double 
 
 // ---- reading at the last event
 
-int shoal_read(struct shoal *run, const char *name, struct shoal_array *array) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
-    TRY(handle_need(array, __func__, "array"));
-    *array = (struct shoal_array){.values = NULL};
-    TRY(handle_need(run, __func__, "run"));
-    TRY(handle_need(name, __func__, "name"));
-    int i = 0;
-    while (i < result_table_n && strcmp(result_table[i].name, name) != 0) i++;
-    if (i == result_table_n) {
-        return status_fail(STATUS_CASE, "%s: there is no variable '%s': `shoal keys --output` lists all variables",
-                           __func__, name);
-    }
+/* A row of the table of results, and the array for its values. */
+struct reading {
+    int row;
+    struct shoal_array *array;
+};
+
+static enum status read_variable(struct shoal *run, const void *data) {
+    const struct reading *const reading = data;
+    const int i = reading->row;
 
     // request the buffer once, for the largest size in this run: pointers of callers stay valid
     const struct result_variable *const variable = &result_table[i];
@@ -273,6 +279,7 @@ int shoal_read(struct shoal *run, const char *name, struct shoal_array *array) {
     run->is_filled[i] = true;
 
     const enum result_type type = variable->type;
+    struct shoal_array *const array = reading->array;
     *array = (struct shoal_array){.values = run->buffer[i],
                                   .type = type == RESULT_INTEGER ? SHOAL_INT
                                           : type == RESULT_COUNT ? SHOAL_LONG
@@ -288,17 +295,40 @@ int shoal_read(struct shoal *run, const char *name, struct shoal_array *array) {
     return STATUS_OK;
 }
 
+int shoal_read(struct shoal *run, const char *name, struct shoal_array *array) {
+    TRY(handle_need(array, __func__, "array"));
+    *array = (struct shoal_array){.values = NULL};
+    TRY(handle_need(run, __func__, "run"));
+    TRY(handle_need(name, __func__, "name"));
+    int row = 0;
+    while (row < result_table_n && strcmp(result_table[row].name, name) != 0) row++;
+    if (row == result_table_n) {
+        return status_fail(STATUS_CASE, "%s: there is no variable '%s': `shoal keys --output` lists all variables",
+                           __func__, name);
+    }
+    TRY(handle_mend(run, __func__));
+    return handle_call(run, read_variable, &(struct reading){row, array});
+}
+
 const char *shoal_variable(int i) {
     return i >= 0 && i < result_table_n ? result_table[i].name : NULL;
 }
 
-/* Evaluate the flow in an arena that the caller frees. */
-static enum status flow_at_points(struct shoal *run, int n, const double *points, double *velocity, double *vorticity,
-                                  struct arena **arena) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
-    *arena = arena_create(NULL, "the points of a flow");
-    double *work;
-    NEW(*arena, work, 7 * (size_t)n);
+/* Points, and the flow at them, as shoal_flow has them; the caller frees the arena. */
+struct points {
+    int n;
+    const double *points;
+    double *velocity, *vorticity;
+    struct arena **arena;
+};
+
+static enum status flow_at_points(struct shoal *run, const void *data) {
+    const struct points *const given = data;
+    const int n = given->n;
+    const double *const points = given->points;
+    double *const velocity = given->velocity, *const vorticity = given->vorticity, *work;
+    *given->arena = arena_create(NULL, "the points of a flow");
+    NEW(*given->arena, work, 7 * (size_t)n);
     double *const x = work, *const y = x + n;
     const struct targets at = {
         .n = n, .x = x, .y = y, .u = y + n, .v = y + 2 * n, .u_x = y + 3 * n, .u_y = y + 4 * n, .v_x = y + 5 * n};
@@ -330,8 +360,10 @@ int shoal_flow(struct shoal *run, int n, const double *points, double *velocity,
                            points[2 * i + 1]);
     }
 
+    TRY(handle_mend(run, __func__));
     struct arena *arena = NULL;
-    const enum status status = flow_at_points(run, n, points, velocity, vorticity, &arena);
+    const enum status status =
+        handle_call(run, flow_at_points, &(struct points){n, points, velocity, vorticity, &arena});
     arena_free(arena);
     return status;
 }
@@ -398,7 +430,7 @@ static enum status create_result_file(struct shoal *run, const void *data) {
                                          .command = "libshoal",
                                          .school = run->simulation->school,
                                          .n_events = run->simulation->n_events};
-    TRY(record_create(run->arena, &run->record, &origin));
+    TRY(record_create(run->checkpoints.arena, &run->record, &origin));
     TRY(write_row(run, NULL));
     return result_file_publish(run->record.file, "running");
 }
@@ -421,6 +453,7 @@ int shoal_write(struct shoal *run, const char *path, int overwrite) {
     TRY(handle_need(path, __func__, "path"));
     TRY(handle_check_alive(run, __func__));
     TRY(check_process(run, __func__));
+    TRY(handle_mend(run, __func__));
     if (run->record.file) {
         return status_fail(STATUS_CASE, "%s: the run already writes %s: call shoal_write_end first", __func__,
                            run->record_path);
@@ -435,6 +468,7 @@ int shoal_checkpoint(struct shoal *run) {
     if (!run->record.file) {
         return status_fail(STATUS_CASE, "%s: a checkpoint needs a result file: call shoal_write first", __func__);
     }
+    TRY(handle_mend(run, __func__));
     return write_checkpoint(run);
 }
 

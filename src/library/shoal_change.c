@@ -111,12 +111,24 @@ static enum status change_make(struct shoal *run, const void *data) {
     return handle_renew(run);
 }
 
+/* Where to put a copy of the state. */
+struct keeping {
+    struct state **kept;
+};
+
+static enum status keep_state(struct shoal *run, const void *data) {
+    const struct keeping *const to = data;
+    *to->kept = state_create(run->arena, run->simulation->school);
+    state_table_copy(*to->kept, run->simulation->state, run->simulation->school, true);
+    return STATUS_OK;
+}
+
 /* Change a run; after a failure restore the state before the change. */
 static enum status change_run(struct shoal *run, const struct change *change) {
     TRY(handle_renew(run));
     const struct integrator_counts when_reached = run->when_reached;
-    struct state *const kept = state_create(run->arena, run->simulation->school);
-    state_table_copy(kept, run->simulation->state, run->simulation->school, true);
+    struct state *kept = NULL;
+    TRY(handle_call(run, keep_state, &(struct keeping){&kept}));
 
     const enum status status = handle_call(run, change_make, change);
     if (status != STATUS_OK) {
@@ -134,7 +146,6 @@ static enum status change_run(struct shoal *run, const struct change *change) {
 }
 
 int shoal_set_state(struct shoal *run, int fish, const double *position, const double *velocity) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
     TRY(handle_check_fish(run, fish, __func__));
     TRY(handle_check_alive(run, __func__));
     const struct fish *const of = &run->simulation->school->fish[fish];
@@ -173,7 +184,6 @@ int shoal_set_state(struct shoal *run, int fish, const double *position, const d
 }
 
 int shoal_add_vortex(struct shoal *run, int fish, double x, double y, double circulation) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
     TRY(handle_check_fish(run, fish, __func__));
     TRY(handle_check_alive(run, __func__));
     const double vortex[3] = {x, y, circulation};

@@ -52,16 +52,22 @@ int shoal_restore(struct shoal *run, struct shoal *from) {
 // no run can have a result file of this name, so `shoal resume` refuses the checkpoint
 static const char no_result[] = "(memory)";
 
-/* Write a run in an arena that the caller frees. */
-static enum status save_run(struct shoal *run, const char *path, struct arena **arena) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
-    *arena = arena_create(NULL, path);
-    const struct checkpoint checkpoint = {.effective = case_show(*arena, &run->shared->values),
+/* The path of a checkpoint, and the arena in which it is made, which the caller frees. */
+struct saving {
+    const char *path;
+    struct arena **arena;
+};
+
+static enum status save_run(struct shoal *run, const void *data) {
+    const struct saving *const saving = data;
+    const char *const path = saving->path;
+    struct arena *const arena = *saving->arena = arena_create(NULL, path);
+    const struct checkpoint checkpoint = {.effective = case_show(arena, &run->shared->values),
                                           .result = no_result,
                                           .places = "",
                                           .totals = run->when_reached,
                                           .wall_time = simulate_wall_time(run->simulation)};
-    return checkpoint_write(*arena, path, NULL, &checkpoint, run->simulation->state, run->simulation->school);
+    return checkpoint_write(arena, path, NULL, &checkpoint, run->simulation->state, run->simulation->school);
 }
 
 int shoal_save(struct shoal *run, const char *path) {
@@ -70,7 +76,7 @@ int shoal_save(struct shoal *run, const char *path) {
     TRY(target_check(path, TARGET_CHECKPOINT, true));
     TRY(handle_renew(run));
     struct arena *arena = NULL;
-    const enum status status = save_run(run, path, &arena);
+    const enum status status = handle_call(run, save_run, &(struct saving){path, &arena});
     arena_free(arena);
     return status;
 }

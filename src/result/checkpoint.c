@@ -62,7 +62,6 @@ static void *checkpoint_place(struct checkpoint *checkpoint, size_t offset) {
 enum status checkpoint_write(struct arena *arena, const char *path, const char *previous,
                              const struct checkpoint *checkpoint, const struct state *state,
                              const struct school *school) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
     struct arena *const scratch = arena_create(arena, "a checkpoint");
     char program[VERSION_LENGTH], libraries[VERSION_LENGTH], processor[VERSION_LENGTH];
     snprintf(program, sizeof program, "%s", version_short());
@@ -203,7 +202,6 @@ enum status checkpoint_check_target(struct arena *arena, const char *path, const
 }
 
 enum status checkpoint_info(struct arena *arena, const char *path, enum checkpoint_part part, FILE *stream) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
     struct checkpoint all;
     TRY(checkpoint_read(arena, &all, path));
     if (part == CHECKPOINT_CASE) {

@@ -124,7 +124,7 @@ static bool part_name_of(const char *target, char name[PATH_MAX]) {
 
 // ---- a file in the making
 
-/* The names of the unpublished parts of this process, for an end by a signal. */
+/* The names of the unpublished parts of this process, for an end by a signal or for lack of memory. */
 enum { MAX_PARTS = 8 };
 static struct {
     _Atomic pid_t process; /* 0: free. A fork does not remove the parts of its parent */
@@ -210,9 +210,6 @@ void durable_discard(const char *target) {
 
 // ---- the claim of a run
 
-// the claim that this process took last
-static struct durable_claim *_Atomic last_claim;
-
 enum status durable_claim_take(struct durable_claim *claim, const char *path) {
     *claim = (struct durable_claim){.descriptor = {-1, -1}, .process = getpid()};
     int code = part_name_of(path, claim->part) ? 0 : ENAMETOOLONG;
@@ -220,11 +217,9 @@ enum status durable_claim_take(struct durable_claim *claim, const char *path) {
 
     if (code == 0) {
         // a result that cannot be opened for writing has no writer
+        part_note(claim->part);
         code = open_locked(path, 0, 0, BYTE_OF_CLAIM, &claim->descriptor[1]);
-        if (code != EAGAIN) {
-            last_claim = claim;
-            return STATUS_OK;
-        }
+        if (code != EAGAIN) return STATUS_OK;
     }
 
     durable_claim_release(claim);
@@ -236,12 +231,11 @@ enum status durable_claim_take(struct durable_claim *claim, const char *path) {
 
 void durable_claim_release(struct durable_claim *claim) {
     if (claim->part[0] == '\0') return;
-    struct durable_claim *expected = claim;
-    atomic_compare_exchange_strong(&last_claim, &expected, NULL);
 
     // remove the name before unlocking
     const bool is_mine = claim->process == getpid();
     if (is_mine && durable_has_name(claim->descriptor[0], claim->part)) unlink(claim->part);
+    part_forget(claim->part);
 
     for (int i = 0; i < 2; i++) {
         if (is_mine && claim->descriptor[i] >= 0) unlock(claim->descriptor[i]);
@@ -249,10 +243,6 @@ void durable_claim_release(struct durable_claim *claim) {
         claim->descriptor[i] = -1;
     }
     claim->part[0] = '\0';
-}
-
-void durable_claim_give_up(void) {
-    if (last_claim) durable_claim_release(last_claim);
 }
 
 // ---- replacing, and keeping the one before

@@ -57,8 +57,8 @@ int durable_publish(struct durable_part *part, bool overwrite);
 /* Close the part; remove an unpublished part. */
 void durable_end(struct durable_part *part);
 
-/* Remove all unpublished parts of this process, not those of its parent. For a handler of signals that end the process:
- * safe at any time. */
+/* Remove all unpublished parts of this process, those of its claims too, not those of its parent: the last act of a
+ * process, which a lack of memory or a signal may have interrupted anywhere. Safe in a handler of signals. */
 void durable_remove_parts(void);
 
 /* Remove the part that a process left when it died. */
@@ -78,9 +78,6 @@ enum status durable_claim_take(struct durable_claim *claim, const char *path);
 /* Release the claim, if there is one, and remove a part that was not published. In a fork of the process: only clear
  * *claim. */
 void durable_claim_release(struct durable_claim *claim);
-
-/* Release the claim that this process took last, if it still has it: for an end of the program in a library. */
-void durable_claim_give_up(void);
 
 /* Replace the contents of a file; the old file is renamed to previous, or discarded if previous is NULL. After any
  * failure or power cut, path or previous is a complete file. Fails with STATUS_FILE and a message that begins with the

@@ -470,7 +470,6 @@ enum status netcdf_open(struct arena *arena, struct netcdf_reader *reader, const
 
 enum status netcdf_print(struct arena *arena, const char *path,
                          enum status (*print)(const struct netcdf_reader *reader, FILE *stream), FILE *stream) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
     struct netcdf_reader *reader;
     struct arena *const scratch = arena_create(arena, path);
     NEW(scratch, reader, 1);

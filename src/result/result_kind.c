@@ -14,7 +14,6 @@ enum status result_kind_info(struct arena *arena, int n_kinds, const struct resu
                              enum result_info_form form, FILE *stream) {
     static const char *const lines[][2] = {
         {"  case        %s\n", "title"}, {"  program     %s\n", "source"}, {"  history     %s\n", "history"}};
-    MEMORY_BOUNDARY(STATUS_MEMORY);
     struct arena *const scratch = arena_create(arena, path);
     struct netcdf_reader *reader;
     const struct result_kind *kind = kinds;

@@ -125,7 +125,6 @@ static enum status checkpoint_put(struct checkpoints *checkpoints, const struct 
 
 enum status checkpoints_write(struct checkpoints *checkpoints, const struct simulation *simulation,
                               const struct record *record) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
     const struct state *const state = simulation->state;
 
     // if the wall time has just written a checkpoint at this event, it lacks only the note
@@ -142,7 +141,6 @@ enum status checkpoints_write(struct checkpoints *checkpoints, const struct simu
 
 enum status checkpoints_write_by_wall(struct checkpoints *checkpoints, const struct simulation *simulation,
                                       const struct record *record) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
     checkpoints->is_by_wall = true;
     return checkpoint_put(checkpoints, simulation, record, checkpoint_places(checkpoints, simulation->state));
 }

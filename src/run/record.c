@@ -14,7 +14,6 @@ char *record_path(struct arena *arena, const struct case_values *values) {
 }
 
 enum status record_create(struct arena *arena, struct record *record, const struct result_origin *origin) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
     const struct case_values *const values = origin->values;
     struct result_origin whole = *origin;
     *record = (struct record){.path = origin->path, .n_events = origin->n_events};

@@ -81,7 +81,6 @@ static void run_report_step(double t, void *data) {
 }
 
 static enum status run_loop(struct run *run) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
     const struct simulate_options *const options = run->options;
     struct simulation *const simulation = run->simulation;
     simulation->stop = options->stop;
@@ -151,7 +150,6 @@ bool simulate_can_resume(struct arena *arena, const char *result, const char *ch
 }
 
 static enum status run_start(struct run *run) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
     const struct simulate_options *const options = run->options;
     struct checkpoints *const checkpoints = &run->checkpoints;
     run->arena = arena_create(NULL, "a run");
@@ -348,7 +346,6 @@ static enum status resume_extend(struct resume *resume, struct result_origin *or
 }
 
 static enum status resume_start(struct resume *resume, const char *path, const struct simulate_changes *changes) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
     struct run *const run = &resume->run;
     const struct simulate_options *const options = run->options;
     run->arena = arena_create(NULL, "a run");

@@ -334,11 +334,6 @@ static void gmres_create(struct linear *linear) {
     linear->weights = sundials_context_vector(&linear->context, linear->weight);
     sundials_context_reserve(&linear->context, MAX_ITERATIONS + 8);
 
-    // try the memory first: after a failed allocation SUNDIALS frees a part and crashes
-    enum { VECTORS = MAX_ITERATIONS + 8, SMALL = 1 << 17 };
-    void *volatile const needed = malloc((size_t)n * VECTORS * sizeof(double) + SMALL);
-    free(needed);
-    if (!needed) arena_lack(arena, 0);
     linear->gmres =
         arena_take(arena, SUNLinSol_SPGMR(linear->x, SUN_PREC_NONE, MAX_ITERATIONS, linear->context.context));
     arena_defer(arena, release_gmres, linear);

@@ -195,9 +195,7 @@ static void warn_of_state(struct run *run) {
     }
 }
 
-// the record of the result is closed after a lack of memory too
 static enum status steady_find(struct run *run, bool is_static) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
     run->found.error = NAN;
 
     // an equilibrium of bodies without a beat has one row
@@ -238,7 +236,6 @@ static enum status refuse_school(const struct school *school) {
 
 enum status steady_refuse(const struct case_values *values) {
     ARENA(arena, NULL, "the school of a case");
-    MEMORY_BOUNDARY(STATUS_MEMORY);
     struct school *school;
     TRY(fish_school_create(arena, &school, &values->school));
     const enum status status = refuse_school(school);
@@ -247,7 +244,6 @@ enum status steady_refuse(const struct case_values *values) {
 }
 
 static enum status find_and_write(struct run *run) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
     const struct steady_options *const options = run->options;
     run->arena = arena_create(NULL, "the steady state");
     TRY(target_check(options->path, TARGET_NETCDF, options->overwrite));
@@ -311,7 +307,7 @@ static enum status find_and_write(struct run *run) {
     char reason[4096];
     snprintf(reason, sizeof reason, "%s", status_message());
     if (status == STATUS_OK) return record_close(&run->record, result_file_publish(run->record.file, "complete"));
-    if (status != STATUS_MEMORY && access(options->path, F_OK) != 0) result_file_publish(run->record.file, "running");
+    if (access(options->path, F_OK) != 0) result_file_publish(run->record.file, "running");
     status_fail(status, "%s", reason);
     return record_close(&run->record, status);
 }

@@ -236,7 +236,6 @@ static bool is_valid_level(struct error_study *study, int k, double value) {
     const struct row row = make_row(study, 1, &(struct error_plan_change){k, value});
     const int member = row_append(study->sweep, row.value, -1, study->is_against);
     const enum status status = study_folder_case(scratch, &values, study->study, member);
-    if (status == STATUS_MEMORY) arena_lack(scratch, 0);
     study->study->sweep[0].n_values = member;
     arena_free(scratch);
     return status == STATUS_OK;

@@ -86,7 +86,8 @@ static void member_report_beats(const struct steady_progress *now, void *data) {
     report->t = now->t;
 }
 
-/* Run a member, resume the member from a checkpoint, or find the steady state of the member. */
+/* Run a member, resume the member from a checkpoint, or find the steady state of the member: the boundary of the
+ * process (base/arena.h). */
 static enum status run_member(const struct study *study, const struct job *job) {
     MEMORY_BOUNDARY(STATUS_MEMORY);
     struct arena *const arena = study->arena;
@@ -155,6 +156,7 @@ static enum status member_start(struct study *study, struct job *job) {
         sigprocmask(SIG_SETMASK, &study->mask, NULL);
         const enum status status = run_member(study, job);
         if (status != STATUS_OK) snprintf(job->report->reason, REASON_BYTES, "%s", status_message());
+        durable_remove_parts();
         _exit(status_exit_code(status));
     }
 
@@ -282,7 +284,6 @@ static enum status lock_members(struct study *study) {
 }
 
 static enum status plan_and_run(struct study *study) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
     const struct study_options *const options = study->options;
 
     // a refused plan creates no folder

@@ -636,7 +636,6 @@ static enum status end_texts(FILE *stream, FILE *warnings) {
 enum status study_report(const struct case_values *study, const char *folder, const char *path, const char *command,
                          bool strict, FILE *stream, FILE *warnings) {
     ARENA(arena, NULL, owner);
-    MEMORY_BOUNDARY(STATUS_MEMORY);
     struct member_file *members;
     TRY(study_folder_read_members(arena, &members, study, folder));
     compare_fill(study, members);
@@ -667,7 +666,6 @@ enum status study_report(const struct case_values *study, const char *folder, co
 /* Run all members in a temporary folder, then report. */
 static enum status run_in_folder(struct arena *arena, const char *folder, const struct case_values *values,
                                  const struct compare_options *options, const struct study_options *run, FILE *stream) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
     struct case_values *study;
     TRY(compare_create(arena, &study, values, options));
     const struct study_options all = {.folder = folder,
@@ -693,19 +691,21 @@ static enum status run_in_folder(struct arena *arena, const char *folder, const 
     return reported == STATUS_SOLVER ? STATUS_OK : reported;
 }
 
+static void folder_remove(void *folder) {
+    study_folder_remove(folder);
+}
+
 enum status study_compare(const struct case_values *values, const struct compare_options *options,
                           const struct study_options *run, FILE *stream) {
     const char *const place = getenv("TMPDIR");
-    char folder[PATH_MAX];
-    snprintf(folder, sizeof folder, "%s/shoal-compare-XXXXXX", place && *place ? place : "/tmp");
-    struct arena *const arena = arena_create(NULL, "a comparison");
+    struct arena *const arena = arena_create(values->arena, "a comparison");
+    char *const folder = arena_text(arena, "%s/shoal-compare-XXXXXX", place && *place ? place : "/tmp");
     if (!mkdtemp(folder)) {
-        arena_free(arena);
         return status_fail(STATUS_FILE, "%s: cannot create this folder (%s): set TMPDIR to another folder", folder,
                            strerror(errno));
     }
+    arena_defer(arena, folder_remove, folder);
     const enum status status = run_in_folder(arena, folder, values, options, run, stream);
-    study_folder_remove(folder);
     arena_free(arena);
     return status;
 }
@@ -717,7 +717,6 @@ enum status study_compare(const struct case_values *values, const struct compare
 static enum status refine_and_report(struct arena *arena, struct error_sweep *sweep, const char *folder,
                                      const struct study_options *options, const char *command, bool strict,
                                      FILE *stream, FILE *warnings) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
     const struct case_values *const study = &sweep->study;
     struct error_study *const first = &sweep->point[0];
     struct member_file *members;
@@ -768,7 +767,6 @@ static enum status refine_and_report(struct arena *arena, struct error_sweep *sw
 enum status study_errors(const struct case_values *values, const struct study_options *options, int plan, bool strict,
                          FILE *stream, FILE *warnings) {
     ARENA(arena, NULL, owner);
-    MEMORY_BOUNDARY(STATUS_MEMORY);
     struct error_sweep *sweep;
     TRY(error_plan_create(arena, &sweep, values, options));
     if (plan > 0) {
@@ -784,7 +782,6 @@ enum status study_errors(const struct case_values *values, const struct study_op
 
 enum status study_gather(const char *folder, const char *command, bool strict, FILE *stream, FILE *warnings) {
     ARENA(arena, NULL, owner);
-    MEMORY_BOUNDARY(STATUS_MEMORY);
     const char *text;
     struct case_values *study;
     TRY(study_folder_find_study(arena, folder, &text));

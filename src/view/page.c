@@ -383,9 +383,7 @@ static enum status write_data(const struct page *page) {
     return STATUS_OK;
 }
 
-/* Fill the file. After a lack of memory plain_file_close removes the file. */
 static enum status fill_page(struct page *page) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
     page->n_rows = page->reader->length[TIME];
     page->n_fish = page->reader->length[FISH];
     for (size_t f = 0; f < page->n_fish; f++) page->n_nodes += (size_t)page->reader->n_nodes[f];

@@ -265,19 +265,12 @@ struct content {
     enum status (*write)(const struct export *export, struct arena *arena, size_t row, FILE *stream);
 };
 
-/* After a lack of memory the caller removes the file. */
-static enum status fill_file(const struct export *export, struct arena *arena, const struct content *content,
-                             size_t row, FILE *stream) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
-    return content->write(export, arena, row, stream);
-}
-
 static enum status write_file(const struct export *export, const char *name, const struct content *content,
                               size_t row) {
     struct arena *const arena = arena_create(export->arena, export->reader->file.path);
     struct plain_file file;
     TRY(plain_file_open(&file, arena_text(arena, "%s/%s", export->folder, name), TARGET_VTK, export->overwrite, 0666));
-    const enum status status = plain_file_close(&file, fill_file(export, arena, content, row, file.stream));
+    const enum status status = plain_file_close(&file, content->write(export, arena, row, file.stream));
     arena_free(arena);
     return status;
 }

@@ -8,7 +8,6 @@
 #include "case/case.h"
 #include "case/case_table.h"
 #include "case_fixture.h"
-#include "failing_malloc.h"
 #include "near.h"
 
 // ---- the fixture
@@ -507,36 +506,6 @@ TEST(the_table_of_keys_is_valid_text_and_json) {
 }
 
 // ---- memory
-
-TEST_WITH(every_failing_allocation_is_reported_and_leaves_nothing, make_folder, remove_folder) {
-    write_file("water.yaml", "fluid: {density: 1025}\n");
-    write_file("case.yaml",
-               "include: [water.yaml]\nformat: 1\ntime: {end: 1}\ndefaults: {fish: {name: a, force: pressure}}\n"
-               "fish:\n  - {nodes: 4, body: {profile: table, thickness_table: [1, 2, 3], depth_table: [1, 2, 3]}}\n"
-               "  - {name: b, control: {law: heading, desired_heading: 3}}\n"
-               "sweep: [{keys: ['fish[*].nodes', solver.order], values: [[4, 1], [4, 2]]},\n"
-               "  {key: solver.rtol, values: [0.1, 1e-3, 1e-4], refine: true, reference: {speed: 1}}]\n"
-               "expect: [{of: speed, where: [solver.order=1], least: 0}, {fails: a}]\n");
-    static const char *const assignments[] = {"fish[*].length=2", "wake.decay=0.1"};
-    static const char text[] = "format: 2\ntiem: {end: 3}\nwake: {kutta: no, decay: x}\nfish: [{nodes: 1}]\n";
-    const int n_before = n_live;
-    int n_failures = 0;
-    for (;; n_failures++) {
-        struct case_values s, wrong, member = {0};
-        n_until_failure = n_failures;
-        enum status status = case_read(&s, "case.yaml", 2, assignments);
-        if (status == STATUS_OK) status = case_member(&member, &s, 1);
-        if (status == STATUS_OK) status = case_parse(&wrong, text, strlen(text), "x.yaml", NULL, 0, NULL);
-        const int ran_out = n_until_failure == -1;
-        n_until_failure = -1;
-        case_free(&s);
-        case_free(&member);
-        assert_int_equal(n_live, n_before);
-        assert_int_equal(status, ran_out ? STATUS_MEMORY : STATUS_CASE);
-        if (!ran_out) break;
-    }
-    assert_in_range(n_failures, 300, 5000);
-}
 
 TEST(freeing_twice_is_harmless) {
     struct case_values s = parse(swept);

@@ -2,13 +2,16 @@
 """Let every allocation of the program fail that a command makes, one at a time; then run the command with little memory,
 from what the program alone needs to what is enough.
 
-    memory.py PROGRAM [EVERY [STEP]]      EVERY: 1 tries all allocations, n every n-th; STEP: kB between two limits
+    memory.py PROGRAM [EVERY [STEP [COMMAND...]]]
+
+EVERY: 1 tries all allocations, n every n-th; STEP: kB between two limits, 0 for none; COMMAND: one of those below, by
+default all of them.
 
 The command ends with exit code 0, where it can do without, or 4 and one message with the words memory or threads, or 1: a
 study whose members fail, and whose table says so. It leaves no part. A result that the command would replace is there
 byte for byte, or, once a run has begun to write rows, the new one is there and can be read; a run that is resumed can be
 resumed again."""
-import os, resource, shutil, subprocess
+import os, resource, shutil, subprocess, sys
 from common import argument, build, counts, finish, judge, parts, program, same, shoal, succeed, write
 
 every, step = argument(2, 1), argument(3, 200)
@@ -108,9 +111,10 @@ def prepare(n_fish, nodes, points, interval):
                    shell=True, check=True)
 
 
+chosen = sys.argv[4:] or list(COMMANDS)
 prepare(2, 5, 9, 0.01)
 tried = 0
-for name in COMMANDS:
+for name in chosen:
     if os.path.exists("counted"):
         os.remove("counted")
     shim = {"LD_PRELOAD": build + "/memory.so", "OMP_NUM_THREADS": "1"}
@@ -123,11 +127,13 @@ for name in COMMANDS:
         found += tried % every == 0 and not attempt(name, f"allocation {at} of {n}", MEMORY_AT=str(at), **shim)
     print(f"{name}: {n} allocations, {found} of those tried end with a message", flush=True)
 
+if step == 0:
+    finish()
 prepare(15, 21, 41, 0.02)
 least = 20000
 while shoal("--version", limits=[(resource.RLIMIT_AS, 1024 * least)]).returncode:
     least += step
-for name in COMMANDS:
+for name in chosen:
     kilobytes, n_enough, n_short = least, 0, 0
     while n_enough < ENOUGH:
         is_enough = attempt(name, f"{kilobytes} kB", limits=[(resource.RLIMIT_AS, 1024 * kilobytes), (resource.RLIMIT_CORE, 0)])

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "base/parallel.h"
-#include "failing_malloc.h"
 #include "school.h"
 #include "solver/sundials.h"
 
@@ -109,32 +108,6 @@ TEST(a_clone_has_values_of_its_own) {
     N_VDestroy(second);
     N_VDestroy(clone);
     clear(&both);
-}
-
-static int clone_vector(N_Vector vector) {
-    MEMORY_BOUNDARY(-1);
-    N_VClone(vector);
-    return 0;
-}
-
-// SUNDIALS 6 does not check clones
-TEST(a_clone_without_memory_ends_the_boundary) {
-    for (int threads = 1; threads <= 2; threads++) {
-        struct both both;
-        fill();
-        create(&both, threads);
-        const int n_before = n_live;
-        for (int n = 0; n < 3; n++) {
-            n_until_failure = n;
-            assert_int_equal(clone_vector(both.vector[OURS][0]), -1);
-            n_until_failure = -1;
-        }
-        assert_int_equal(clone_vector(both.vector[OURS][0]), 0);
-        assert_memory_equal(values[OURS], values[SERIAL], sizeof values[SERIAL]);
-        ABOVE(n_live, n_before);
-        clear(&both);
-    }
-    assert_int_equal(n_live, 0);
 }
 
 // a call that IDA refuses: its message is ours, unless a callback has failed before, whose message is the cause
