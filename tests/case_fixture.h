@@ -6,7 +6,10 @@
 
 #include "case/case.h"
 #include "case/case_table.h"
+#include "case/case_value.h"
 #include "case/sweep.h"
+#include "case/sweep_expect.h"
+#include "case/sweep_quantity.h"
 #include "near.h"
 
 static const char minimal[] = "format: 1\ntime: {end: 3}\nfish: [{}]\n";

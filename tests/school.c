@@ -10,6 +10,7 @@
 #include "flow/flow_at_bodies.h"
 #include "flow/flow_derivative.h"
 #include "school/residual.h"
+#include "school/residual_jacobian.h"
 #include "state/state.h"
 
 void school_ok(enum status status) {

@@ -3,6 +3,9 @@
 
 #include <string.h>
 
+#include "steady/steady_modes.h"
+#include "steady/steady_search.h"
+
 static void pose(struct steady_setup *setup, const char *text) {
     setup->values = school_values(text);
     setup->simulation = school_simulation(text);

@@ -3,6 +3,7 @@
 #define STEADY_SETUP_H
 
 #include "school.h"
+#include "steady/steady_modes.h"
 #include "steady/steady_problem.h"
 
 // coarse, so that a beat takes some milliseconds: 20 events, 7 nodes, 13 points of the sheet

@@ -5,6 +5,7 @@
 
 #include "app/main_commands.h"
 #include "app/main_options.h"
+#include "app/main_signals.h"
 #include "app/say.h"
 #include "base/arena.h"
 #include "base/text.h"

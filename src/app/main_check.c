@@ -4,12 +4,14 @@
 #include <stdio.h>
 
 #include "app/main_commands.h"
+#include "app/main_signals.h"
 #include "app/say.h"
 #include "base/parallel.h"
 #include "base/text.h"
 #include "case/case.h"
 #include "case/sweep.h"
 #include "result/target.h"
+#include "run/estimate.h"
 #include "run/record.h"
 #include "run/simulate.h"
 #include "school/warnings.h"

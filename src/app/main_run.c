@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "app/main_commands.h"
+#include "app/main_signals.h"
 #include "app/say.h"
 #include "base/parallel.h"
 #include "base/version.h"
@@ -18,7 +19,7 @@
 #include "run/simulate_run.h"
 #include "solver/trace.h"
 #include "steady/steady.h"
-#include "view/export.h"
+#include "view/page.h"
 
 struct teller {
     struct progress progress; /* first, as say_progress_run expects */

@@ -1,4 +1,6 @@
 /* main_signals.c: a signal only stores its number; the integration asks for it and stops with a checkpoint. */
+#include "app/main_signals.h"
+
 #include <fcntl.h>
 #include <math.h>
 #include <poll.h>

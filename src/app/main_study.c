@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "app/main_commands.h"
+#include "app/main_signals.h"
 #include "app/say.h"
 #include "case/case.h"
 #include "case/sweep_error.h"
@@ -17,6 +18,7 @@
 #include "study/error_plan.h"
 #include "study/study.h"
 #include "study/study_file.h"
+#include "study/study_slurm.h"
 
 // ---- study, error, gather
 

@@ -5,13 +5,16 @@
 #include <string.h>
 
 #include "app/main_commands.h"
+#include "app/main_signals.h"
 #include "app/say.h"
 #include "base/arena.h"
 #include "base/text.h"
 #include "result/netcdf.h"
 #include "result/target.h"
-#include "view/export.h"
 #include "view/field_file.h"
+#include "view/field_row.h"
+#include "view/page.h"
+#include "view/vtk.h"
 
 /* Print a note on rows that are missing because the file is truncated. */
 static void note_missing(const char *path) {

@@ -1,4 +1,6 @@
 /* bending_mode.c: the slowest bending mode, by power iteration on the flexibility of a body (Stodola's method). */
+#include "body/bending_mode.h"
+
 #include <math.h>
 
 #include "body/rod.h"

@@ -143,13 +143,6 @@ void rod_stress_creep(const struct fish *fish, double h, double g, const double 
 /* The rates of the strains from strains and stresses, as in rod_strains. */
 void rod_stress_rates(const struct fish *fish, const double *strain, const double *stress, double *rate);
 
-// ---- bending_mode.c: lowest natural frequency of a body. Tested by tests/body/test_bending_mode.c.
-
-/* Frequency of the slowest bending mode of a body in the fluid, Hz, linearised about the straight body: free at both
- * ends, or clamped at a prescribed head. With force: pressure, the added mass is the flow around a straight sheet
- * without shedding. scratch: (6 n_nodes). */
-double bending_mode_frequency(const struct fish *fish, double *scratch);
-
 // ---- the joint at the nose that holds the direction of edge 0 of a body with a prescribed head. doc/model.md, section
 // 2. Tested by tests/body/test_clamp.c.
 //

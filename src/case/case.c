@@ -4,10 +4,14 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "case/case_check.h"
 #include "case/case_merge.h"
+#include "case/case_path.h"
 #include "case/case_table.h"
+#include "case/case_value.h"
 #include "case/sweep.h"
 #include "case/sweep_error.h"
+#include "case/sweep_expect.h"
 
 /* A case being read. The tree and the errors have an arena of their own. */
 struct reading {

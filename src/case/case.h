@@ -45,20 +45,4 @@ int case_keys(struct arena *arena, FILE *stream, bool as_json, const char *word)
 /* case_show.c: a commented case to start from, complete and valid. */
 extern const char case_template[];
 
-// ---- case_check.c: relations between keys with valid values, and values that are allowed but implausible: an angle in
-// radians, a length in centimetres, a body softer than jelly, a wave that travels forwards. Tested by
-// tests/case/test_case.c and tests/case/bad_cases.txt.
-
-struct case_tree;
-struct yaml_errors;
-
-/* Add an error for every inconsistency. Skips values that were not read (see case_table.h). */
-void case_check(const struct case_values *values, const struct case_tree *tree, struct yaml_errors *errors);
-
-/* Add a note for every implausible value of a case without errors, and for every key whose value switches derived
- * defaults of other keys, once per place in the sources. initial: a case with one fish and the same preset, without
- * other keys. */
-void case_notes(const struct case_values *values, const struct case_values *initial, const struct case_tree *tree,
-                struct yaml_errors *notes);
-
 #endif

@@ -1,4 +1,6 @@
 /* case_check.c: refuses values that contradict each other, and warns of values that are hardly ever meant. */
+#include "case/case_check.h"
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -9,8 +11,10 @@
 #include "case/case.h"
 #include "case/case_merge.h"
 #include "case/case_table.h"
+#include "case/case_value.h"
 #include "case/sweep.h"
 #include "fish/fish_school.h"
+#include "fish/fish_sheet.h"
 
 static const double max_events = 1e9, max_vortices = 1e7 /* of one fish */;
 

@@ -6,6 +6,7 @@
 #include "case/case.h"
 #include "case/case_table.h"
 #include "case/sweep.h"
+#include "case/sweep_quantity.h"
 
 enum { METHOD_BYTES = 200 };
 

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/version.h"
+#include "case/case_path.h"
 #include "case/case_table.h"
 #include "case/sweep_error.h"
 

@@ -1,5 +1,7 @@
 /* case_path.c: follows a path such as fish[2].body.modulus word by word along the table of keys, and suggests a key for
  * a word that is unknown. */
+#include "case/case_path.h"
+
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>

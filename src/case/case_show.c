@@ -4,8 +4,11 @@
 
 #include "case/case.h"
 #include "case/case_table.h"
+#include "case/case_value.h"
 #include "case/sweep.h"
 #include "case/sweep_error.h"
+#include "case/sweep_expect.h"
+#include "case/sweep_quantity.h"
 #include "case/yaml_tree.h"
 
 enum { COMMENT_COLUMN = 40 };

@@ -8,6 +8,7 @@
 
 #include "base/text.h"
 #include "fish/fish_school.h"
+#include "fish/fish_sheet.h"
 
 #define AT(field) offsetof(struct case_values, field)
 #define IN_FISH(field) offsetof(struct fish_parameters, field)

@@ -1,4 +1,6 @@
 /* case_value.c: reads and writes a value of each type in the table of keys. */
+#include "case/case_value.h"
+
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>

@@ -5,6 +5,7 @@
 #define CASE_VALUES_H
 
 #include "base/methods.h"
+#include "case/sweep_expect.h"
 #include "fish/parameters.h"
 
 enum precision { PRECISION_DOUBLE, PRECISION_SINGLE };

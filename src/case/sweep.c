@@ -15,8 +15,11 @@
 #include <string.h>
 
 #include "case/case_merge.h"
+#include "case/case_path.h"
 #include "case/case_table.h"
+#include "case/case_value.h"
 #include "case/sweep_error.h"
+#include "case/sweep_quantity.h"
 
 enum { MAX_KEYS = 16 /* of one axis */, MIN_LEVELS = 3 /* of an axis of resolutions */ };
 static const double max_members = 1e5;

@@ -4,12 +4,15 @@
  *     - {of: [nose, tail], spread: 1e-5}                                   all values together
  *     - {of: steps, where: ["solver.method=ida"], ratio: 1.5}              of some members
  *     - {fails: unstable, where: ["solver.method=euler"]}                  that are not complete, with reason */
+#include "case/sweep_expect.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "base/text.h"
 #include "case/sweep.h"
+#include "case/sweep_quantity.h"
 
 /* An expectation being read. */
 struct reading {

@@ -1,4 +1,6 @@
 /* sweep_quantity.c: the table of quantities that a study can report. */
+#include "case/sweep_quantity.h"
+
 #include <stdio.h>
 #include <string.h>
 

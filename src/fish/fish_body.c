@@ -1,4 +1,6 @@
 /* fish_body.c: sets the constants of every edge, joint and node. doc/model.md, sections 1, 3 and 9. */
+#include "fish/fish_body.h"
+
 #include <math.h>
 #include <string.h>
 

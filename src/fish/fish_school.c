@@ -7,7 +7,9 @@
 #include <string.h>
 
 #include "base/mathematics.h"
+#include "fish/fish_body.h"
 #include "fish/fish_motion.h"
+#include "fish/fish_sheet.h"
 
 // ---- fluid and wakes
 

@@ -1,5 +1,7 @@
 /* fish_sheet.c: sets the constants of the bound sheet: its points, at cosine spacing on the polygon or on the smooth
  * curve, the strip of a sheet of finite span, and what the pressure needs. doc/model.md, sections 6, 15 and 18. */
+#include "fish/fish_sheet.h"
+
 #include <math.h>
 #include <string.h>
 

@@ -7,6 +7,8 @@
 #include "base/wide.h"
 #include "body/rod.h"
 #include "fish/fish_motion.h"
+#include "flow/flow_external.h"
+#include "flow/images.h"
 
 int flow_midpoint(const struct fish *fish, int edge) {
     return fish->n_control + edge;

@@ -1,6 +1,6 @@
 /* flow.h: what induces velocity, and where it is needed: the evaluation points of all bodies, and the positions and
- * strengths of all sources. The sums at bodies are in flow_at_bodies.h and flow_derivative.h, those at wakes at the end
- * of this file. doc/model.md, sections 6 to 9, 17, 18. Tested by tests/flow/test_flow.c.
+ * strengths of all sources. The sums at bodies are in flow_at_bodies.h and flow_derivative.h, those at wakes in
+ * flow_at_wake.h and flow_leg_rate.h. doc/model.md, sections 6 to 9, 17, 18. Tested by tests/flow/test_flow.c.
  *
  * The points of one fish, in this order:
  *
@@ -161,63 +161,5 @@ void flow_append_with_span(struct sources *many, const struct sources *sources, 
 /* Interpolate a quantity from the nodes of fish f to its points; of_points holds the values at the points of all fish
  * (n_points). */
 void flow_from_nodes(const struct flow *flow, int f, const double *of_nodes, double *of_points);
-
-// ---- flow_external.c: the external flow at time t, a stream with shear and gusts. doc/model.md, sections 8 and 9.
-// Tested by tests/flow/test_flow.c.
-
-/* flow_external_gust gives only the travelling gust; flow_external_gradient gives u_x, u_y, v_x, s-1 (v_y = -u_x). */
-void flow_external(const struct school *school, double t, double x, double y, double *u, double *v);
-void flow_external_gust(const struct school *school, double t, double x, double y, double *u, double *v);
-void flow_external_gradient(const struct school *school, double t, double x, double y, double gradient[3]);
-
-/* The acceleration Du/Dt of a particle of the external flow at time t, m s-2. It is uniform in space; a travelling gust
- * is left out. */
-void flow_external_acceleration(const struct school *school, double t, double acceleration[2]);
-
-// ---- flow_at_wake.c: the velocity of the fluid at the markers of free sheets, or at the released vortices, of all
-// fish. doc/model.md, sections 8, 9 and 18. Tested by tests/flow/test_flow.c, tests/flow/test_flow_at_markers.c.
-//
-// The velocity at markers comes from the same sources as the force on bodies, with the same smoothing for the same
-// pair. This is what conserves the impulse of bodies and wakes. The body that shed the markers acts on them with the
-// tapered smoothing delta(d) of sheet.h; images are never tapered.
-
-/* Set wake_range, wake_u, wake_v and all other arrays at markers, for the event of the state. */
-void flow_at_wake(struct flow *flow, const struct state *state);
-
-// ---- flow_leg_rate.c: the momentum that legs take because their lengths s change along a wake. doc/model.md, section
-// 18. Tested by tests/flow/test_flow_leg_rate.c.
-
-/* Set the boxes of all legs, which flow_leg_rate needs; call it after flow_at_wake. */
-void flow_leg_boxes(struct flow *flow);
-
-/* The rate R at which fish f and its wake lose momentum because legs of different lengths s act on each other, over
- * density and depth, m4 s-2: x, y, and its moment about the origin, m5 s-2. rate counts the legs of all fish, image the
- * images of legs, along walls only. At the event of the state, after flow_at_wake. 0 without legs. */
-void flow_leg_rate(const struct flow *flow, const struct state *state, int f, double rate[3], double image[3]);
-
-// ---- images.c: walls. A straight wall along x is impermeable because every source has an image behind it.
-// doc/model.md, section 17. Tested by tests/flow/test_images.c.
-//
-// A source of strength q, d at (x, y) has in the wall y = h an image of -q, (-dx, dy) at (x, 2h - y). In a channel, h <
-// y < h + H, each image is mirrored again, which gives images of the source itself at y + 2kH and of the mirrored
-// source at 2h - y + 2kH for every integer k.
-
-/* An image of every source, at (x, sign y + shift), with the fraction `weight` of its strength. sign = -1: mirrored in
- * a wall, so that circulation and the legs along the wall are reversed. */
-struct image {
-    double sign, shift, weight;
-};
-
-/* Set *image to the images of sources of at most this depth [m] (infinite span: 0) and return their number, which is 0
- * without walls.
- *
- * In a channel a Gauss rule replaces the infinite sums: the images k = 1 stay, and all further ones are represented by
- * weighted images at nodes between them. There are 36 images for depths up to 8 H, 32 more for each factor of 4, and at
- * most 272. The error is at most 1e-8 of the velocity of a vortex at the distance H if source and target are less than
- * 6 H apart. */
-int images_find(struct arena *arena, const struct walls *walls, double depth, struct image **image);
-
-/* Write all images of the sources, image after image, to *images, replacing what it holds. */
-void images_write(const struct sources *sources, int n_images, const struct image *image, struct sources *images);
 
 #endif

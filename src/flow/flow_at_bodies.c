@@ -7,6 +7,7 @@
 
 #include "base/mathematics.h"
 #include "flow/flow.h"
+#include "flow/flow_external.h"
 #include "flow/others.h"
 
 struct flow_at_body flow_at_body(const struct flow *flow, int f) {

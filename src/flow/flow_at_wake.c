@@ -1,10 +1,13 @@
 /* flow_at_wake.c: sums at markers. Wakes act on themselves and on each other in pairs, or through the tree if they are
  * many; then bodies and images follow. */
+#include "flow/flow_at_wake.h"
+
 #include <math.h>
 #include <string.h>
 
-#include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
+#include "flow/flow_external.h"
+#include "flow/images.h"
 
 static const double two_pi = 6.28318530717958647692;
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/wide.h"
+#include "flow/images.h"
 
 // ---- what one source contributes
 

@@ -1,4 +1,6 @@
 /* flow_external.c: the stream with its shear, and gusts. */
+#include "flow/flow_external.h"
+
 #include <math.h>
 
 #include "base/mathematics.h"

@@ -1,11 +1,13 @@
 /* flow_leg_rate.c: the momentum that legs take because their lengths s and half spans b change along a strip. The
  * fish's own legs are summed at control points and markers. For other fish and images the same rate is integrated by
  * parts, which concentrates it where s or b change, and far legs are left out. */
+#include "flow/flow_leg_rate.h"
+
 #include <math.h>
 #include <string.h>
 
 #include "base/mathematics.h"
-#include "flow/flow.h"
+#include "flow/images.h"
 
 enum {
     TARGETS = 64,  // so many changes of one fish are summed at once

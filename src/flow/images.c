@@ -1,4 +1,6 @@
 /* images.c: one image for a single wall, and Gauss rules that replace the infinite sums of images in a channel. */
+#include "flow/images.h"
+
 #include <string.h>
 
 #include "base/mathematics.h"

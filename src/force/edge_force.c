@@ -9,6 +9,7 @@
 #include "fish/fish_motion.h"
 #include "force/drag.h"
 #include "force/reactive.h"
+#include "state/impulse.h"
 
 // the forces of one edge: the drag on the edge, the reactive force on each node, and, on the last edge, the tail flux
 struct edge_forces {

@@ -17,6 +17,7 @@
 #include "flow/flow_at_bodies.h"
 #include "flow/flow_derivative.h"
 #include "force/pressure.h"
+#include "state/impulse.h"
 #include "state/state.h"
 
 /* Forces on a body or on an edge, N, and moments about a point, N m. friction is the tangential part of the resistive

@@ -10,6 +10,7 @@
 #include "fish/fish_motion.h"
 #include "force/edge_force.h"
 #include "force/force_model.h"
+#include "state/impulse.h"
 
 /* What is evaluated at the control points by full matrices: X' in x and y, velocity in x and y, circulation of the
  * interval, and circulation between nose and point. */

@@ -1,11 +1,14 @@
 /* sensor_pressure.c: the rate of the potential at the control points, and Bernoulli's equation on both sides at the
  * sensors. */
+#include "force/sensor_pressure.h"
+
 #include <math.h>
 #include <stddef.h>
 
 #include "body/rod.h"
 #include "flow/flow_at_bodies.h"
-#include "force/pressure.h"
+#include "flow/flow_external.h"
+#include "flow/images.h"
 
 /* One source. If the circulation before it changes at the rate dC/dt, it also acts as a dipole dC/dt dx. */
 struct sensor_source {

@@ -8,6 +8,7 @@
 
 #include "body/rod.h"
 #include "force/pressure.h"
+#include "force/sensor_pressure.h"
 
 const double thwaites_separation = -0.09;
 

@@ -5,9 +5,11 @@
 
 #include "contact/clearance.h"
 #include "library/handle.h"
+#include "run/event.h"
 #include "run/simulate.h"
 #include "school/diagnostics_energy.h"
 #include "school/diagnostics_momentum.h"
+#include "state/impulse.h"
 #include "state/state.h"
 
 int shoal_state(struct shoal *run, int fish, double *position, double *velocity) {

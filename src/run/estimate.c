@@ -1,9 +1,11 @@
 /* estimate.c: measures the first events of a run and events with synthetic wakes, and extrapolates to the whole run. */
+#include "run/estimate.h"
+
 #include <math.h>
 #include <sys/resource.h>
 
 #include "base/parallel.h"
-#include "run/simulate.h"
+#include "run/event.h"
 #include "wake/stretch.h"
 
 /* The shape of a synthetic wake: it leaves the tail by `drift` body lengths per beat and swings to both sides by

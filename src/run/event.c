@@ -1,5 +1,7 @@
 /* event.c: what happens to the water and to the fish between two intervals, step by step. event_next is the event of a
  * run; event_start and event_change are its variants at the start and after a change from outside. */
+#include "run/event.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -7,12 +9,14 @@
 #include "contact/clearance.h"
 #include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
+#include "flow/flow_at_wake.h"
 #include "force/drag.h"
 #include "run/simulate.h"
 #include "school/diagnostics.h"
 #include "school/diagnostics_energy.h"
 #include "school/diagnostics_momentum.h"
 #include "school/warnings.h"
+#include "state/impulse.h"
 #include "state/state.h"
 
 // evaluate the equations; STATUS_RETRY becomes final, because an event has no step size to reduce

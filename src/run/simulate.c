@@ -6,11 +6,13 @@
 #include <time.h>
 
 #include "base/parallel.h"
+#include "body/bending_mode.h"
 #include "body/rod.h"
 #include "fish/fish.h"
 #include "fish/fish_school.h"
 #include "flow/flow_at_bodies.h"
 #include "result/result_table.h"
+#include "run/event.h"
 #include "school/diagnostics_energy.h"
 #include "solver/integrator.h"
 

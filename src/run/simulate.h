@@ -84,40 +84,4 @@ void simulate_count(const struct simulation *simulation, struct integrator_count
 /* Wall time since the creation of the simulation, plus the wall time before the checkpoint of a resumed run, s. */
 double simulate_wall_time(const struct simulation *simulation);
 
-// ---- estimate.c: how long a run will take and how much memory it needs. The estimate measures the first events of the
-// run and then single events with synthetic wakes, each twice as long as the one before, and extrapolates to the
-// longest wakes. It cannot know about later changes of the motion, such as fish that approach each other or stop.
-// Tested by tests/run/test_estimate.c.
-
-struct estimate {
-    double seconds; /* CPU time of the whole run */
-    double bytes;   /* of memory */
-    long n_events;  /* events of the run that the estimate measured */
-};
-
-/* Estimate the cost of a run from a simulation at its start, which can only be freed afterwards. This takes at most
- * `patience` [s] of CPU time, but the first two events are always completed, because the first costs more than the
- * others. If simulation->stop interrupts the first event, the estimate extrapolates from the part that was completed.
- * Fails as simulate_step does if one of the first events fails; the run would fail at the same event. */
-enum status estimate_run(struct simulation *simulation, double patience, struct estimate *estimate);
-
-// ---- event.c: what happens at the times t_n = n Dt: wakes advance, vortices are released and removed and get new
-// velocities, and the control is updated. doc/model.md, sections 7 and 8. Tested by tests/run/test_event.c.
-//
-//     t_n-1 ---- integrator ----> t_n  | move, shed, remove, (consistent), velocities, control, samples |  ---> t_n+1
-
-/* Make the state at t = 0 consistent and perform the first event. Fails with STATUS_SOLVER. */
-enum status event_start(struct state *state, struct residual *residual, struct initial_conditions *initial);
-
-/* Perform the next event; the unknowns must be those at its time. *jumped: the unknowns are discontinuous there, so the
- * integrator has to restart. Fails with STATUS_SOLVER. */
-enum status event_next(struct state *state, struct residual *residual, struct initial_conditions *initial, int *jumped);
-
-/* Account for bodies or wakes that a caller has changed at the event of the state: make the unknowns consistent, as at
- * an event with a jump, and evaluate the velocities of all vortices again. In the next interval the vortices move with
- * these velocities alone. velocities_are_given: the momenta follow from the velocities of the bodies, as at the start;
- * otherwise the velocities follow from the momenta. The integrator has to restart. Fails with STATUS_SOLVER. */
-enum status event_change(struct state *state, struct residual *residual, struct initial_conditions *initial,
-                         int velocities_are_given);
-
 #endif

@@ -12,9 +12,11 @@
 #include "fish/fish.h"
 #include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
+#include "flow/flow_external.h"
 #include "force/bound_sheet.h"
 #include "force/drag.h"
 #include "force/force_model.h"
+#include "force/sensor_pressure.h"
 #include "school/diagnostics_energy.h"
 #include "school/diagnostics_momentum.h"
 

@@ -11,6 +11,7 @@
 #include "fish/fish_motion.h"
 #include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
+#include "flow/flow_external.h"
 #include "force/force_model.h"
 #include "school/diagnostics_momentum.h"
 

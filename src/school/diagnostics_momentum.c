@@ -11,7 +11,10 @@
 #include "fish/fish_motion.h"
 #include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
+#include "flow/flow_external.h"
+#include "flow/flow_leg_rate.h"
 #include "force/force_model.h"
+#include "state/impulse.h"
 #include "state/state.h"
 
 // ---- forces of the fluid, of contacts, of constraints

@@ -13,6 +13,7 @@
 #include "flow/flow_at_bodies.h"
 #include "flow/flow_derivative.h"
 #include "force/pressure.h"
+#include "state/impulse.h"
 
 // ---- unknowns by slices of the layout
 

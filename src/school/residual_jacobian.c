@@ -1,4 +1,6 @@
 /* residual_jacobian.c: the derivatives, in the same order as the equations in residual.c. */
+#include "school/residual_jacobian.h"
+
 #include <omp.h>
 #include <string.h>
 
@@ -7,7 +9,6 @@
 #include "body/rod.h"
 #include "fish/fish_motion.h"
 #include "force/bound_sheet.h"
-#include "school/residual.h"
 
 // how the equations of fish f depend on the unknowns of fish g through the velocity of the fluid
 static void flow_jacobian(const struct residual *residual, const struct residual_mode *mode, int f, int g,

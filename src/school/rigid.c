@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "flow/flow.h"
+#include "flow/flow_external.h"
 
 struct rigid rigid_of(const struct fish *fish, const double *y) {
     const double *const x[2] = {y + fish->at.x, y + fish->at.y}, *const v[2] = {y + fish->at.vx, y + fish->at.vy};

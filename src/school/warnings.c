@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/mathematics.h"
+#include "body/bending_mode.h"
 #include "body/rod.h"
 #include "flow/flow_at_bodies.h"
 

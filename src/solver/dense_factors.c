@@ -1,5 +1,7 @@
 /* dense_factors.c: Gaussian elimination by panels of columns. Tiles of the remaining matrix stay in registers while a
  * panel is applied to them, which is where the speed comes from. */
+#include "solver/dense_factors.h"
+
 #include <math.h>
 #include <string.h>
 

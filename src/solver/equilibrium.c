@@ -10,6 +10,7 @@
 #include "fish/fish_motion.h"
 #include "school/jacobian.h"
 #include "school/residual.h"
+#include "school/residual_jacobian.h"
 #include "solver/newton.h"
 
 /* Tolerance of the scaled residual. Positions are rounded by some 1e-16 of their size, which stretches an edge and

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/wide.h"
+#include "solver/dense_factors.h"
 #include "solver/sparse_factors.h"
 
 /* If eliminating the rod makes a column of S grow by more than 1/min_growth, too many digits are lost, and KLU

@@ -6,6 +6,7 @@
 
 #include "body/rod.h"
 #include "school/residual.h"
+#include "school/residual_jacobian.h"
 #include "solver/ida_newton.h"
 #include "solver/integrator.h"
 #include "solver/linear.h"

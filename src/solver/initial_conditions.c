@@ -9,6 +9,7 @@
 
 #include "flow/flow_at_bodies.h"
 #include "school/residual.h"
+#include "school/residual_jacobian.h"
 #include "solver/integrator.h"
 #include "solver/linear.h"
 #include "solver/sundials.h"

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/parallel.h"
+#include "solver/dense_factors.h"
 #include "solver/fish_factors.h"
 #include "solver/sundials.h"
 

@@ -14,6 +14,7 @@
 #include "flow/flow_at_bodies.h"
 #include "school/jacobian.h"
 #include "school/residual.h"
+#include "school/residual_jacobian.h"
 
 /* Gauss points of the interval, as fractions of it. */
 enum { N_POINTS = 2 };

@@ -5,6 +5,7 @@
 
 #include "base/mathematics.h"
 #include "school/residual.h"
+#include "school/residual_jacobian.h"
 #include "solver/integrator.h"
 #include "solver/linear.h"
 #include "solver/ode_rhs.h"

@@ -1,7 +1,8 @@
 /* impulse.c: the impulse of vortices, and the impulse that is lost when they decay or are removed. */
+#include "state/impulse.h"
+
 #include <math.h>
 
-#include "state/state.h"
 #include "wake/stretch.h"
 
 void impulse_add(struct impulse_moments *sum, double circulation, double x, double y) {

@@ -15,7 +15,11 @@
 #include "run/record.h"
 #include "school/diagnostics_energy.h"
 #include "school/warnings.h"
+#include "steady/steady_modes.h"
 #include "steady/steady_problem.h"
+#include "steady/steady_search.h"
+#include "steady/steady_start.h"
+#include "steady/steady_static.h"
 
 /* Correct the state, at most CORRECTIONS times, while the estimated distance between the speed and the speed of the
  * fixed point, in lengths per beat, exceeds far_away times the tolerance. A small change of the speed per beat does not

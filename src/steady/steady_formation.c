@@ -1,10 +1,11 @@
 /* steady_formation.c: Newton's method for all slow quantities of a formation. */
+#include "steady/steady_formation.h"
+
 #include <math.h>
 #include <string.h>
 
 #include "base/mathematics.h"
 #include "solver/newton.h"
-#include "steady/steady_problem.h"
 
 /* Largest change of a slow quantity in one step, in lengths and in the other scales; largest change since the start,
  * beyond which Newton's method has failed. */

@@ -7,6 +7,7 @@
 #include "base/mathematics.h"
 #include "contact/clearance.h"
 #include "flow/flow.h"
+#include "flow/flow_external.h"
 #include "school/diagnostics_energy.h"
 #include "school/diagnostics_momentum.h"
 #include "state/state.h"

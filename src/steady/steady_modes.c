@@ -1,4 +1,6 @@
 /* steady_modes.c: how stable the state is: the modes of an equilibrium, and the multipliers of a beat. */
+#include "steady/steady_modes.h"
+
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
@@ -6,11 +8,12 @@
 #include "base/mathematics.h"
 #include "fish/fish_motion.h"
 #include "flow/flow.h"
+#include "flow/flow_external.h"
+#include "run/event.h"
 #include "run/simulate.h"
 #include "solver/modes.h"
 #include "solver/newton.h"
 #include "state/state.h"
-#include "steady/steady_problem.h"
 
 /* Wake length, in body lengths: the growth rates agree with an infinite wake to 1e-4 of speed over length. */
 static const double wake_lengths = 12;

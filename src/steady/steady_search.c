@@ -1,11 +1,13 @@
 /* steady_search.c: the search for the fixed point of the map from beat to beat, and Newton's method for all slow
  * quantities of one fish. */
+#include "steady/steady_search.h"
+
 #include <math.h>
 #include <string.h>
 
 #include "base/mathematics.h"
 #include "solver/newton.h"
-#include "steady/steady_problem.h"
+#include "steady/steady_formation.h"
 
 // ---- all slow quantities of one fish
 

@@ -1,4 +1,6 @@
 /* steady_start.c: see steady_problem.h. */
+#include "steady/steady_start.h"
+
 #include <limits.h>
 #include <math.h>
 #include <string.h>

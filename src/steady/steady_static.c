@@ -1,4 +1,6 @@
 /* steady_static.c: the equilibrium of passive bodies in a stream. */
+#include "steady/steady_static.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -7,12 +9,14 @@
 #include "body/rod.h"
 #include "fish/fish_motion.h"
 #include "flow/flow.h"
+#include "flow/flow_external.h"
 #include "school/diagnostics.h"
 #include "school/diagnostics_energy.h"
 #include "school/diagnostics_momentum.h"
 #include "school/rigid.h"
 #include "solver/equilibrium.h"
 #include "steady/steady_problem.h"
+#include "steady/steady_start.h"
 
 bool steady_static_applies(const struct school *school) {
     for (int f = 0; f < school->n_fish; f++) {

@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "case/sweep.h"
+#include "case/sweep_quantity.h"
 #include "study/error_plan.h"
 
 /* Bounds of the rule: smallest order over the design order, largest distance above the design order, largest change

@@ -26,6 +26,7 @@
 
 #include "base/arena.h"
 #include "case/case_values.h"
+#include "case/sweep_quantity.h"
 #include "study/member_file.h"
 
 enum { CONVERGENCE_LEVELS = 4 /* at most so many levels are judged */, CONVERGENCE_BYTES = 256 };

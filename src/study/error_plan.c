@@ -10,9 +10,11 @@
 #include "base/text.h"
 #include "case/case_table.h"
 #include "case/sweep.h"
+#include "case/sweep_expect.h"
 #include "fish/fish_school.h"
 #include "school/warnings.h"
 #include "steady/steady_problem.h"
+#include "steady/steady_static.h"
 #include "study/study_folder.h"
 
 const char *const error_relation_words[N_ERROR_RELATIONS] = {"", "ratio", "change"};

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "case/sweep.h"
+#include "case/sweep_quantity.h"
 #include "result/netcdf.h"
 #include "result/result_table.h"
 

@@ -13,6 +13,8 @@
 
 #include "base/text.h"
 #include "case/sweep.h"
+#include "case/sweep_expect.h"
+#include "case/sweep_quantity.h"
 #include "result/netcdf.h"
 #include "result/target.h"
 #include "study/study_folder.h"

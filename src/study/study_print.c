@@ -10,8 +10,11 @@
 #include "case/case.h"
 #include "case/case_table.h"
 #include "case/sweep.h"
+#include "case/sweep_expect.h"
+#include "case/sweep_quantity.h"
 #include "result/durable.h"
 #include "result/target.h"
+#include "run/estimate.h"
 #include "run/simulate.h"
 #include "study/study_folder.h"
 

@@ -1,4 +1,6 @@
 /* study_slurm.c: runs a study as an array job of Slurm. */
+#include "study/study_slurm.h"
+
 #include <errno.h>
 #include <limits.h>
 #include <stdlib.h>

@@ -11,6 +11,7 @@
 #include "flow/flow_at_bodies.h"
 #include "result/netcdf.h"
 #include "result/target.h"
+#include "view/field_row.h"
 
 // ---- the variables
 

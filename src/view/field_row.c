@@ -1,4 +1,6 @@
 /* field_row.c: makes a state again from the variables of a result file. */
+#include "view/field_row.h"
+
 #include <limits.h>
 #include <math.h>
 #include <stdbool.h>

@@ -1,6 +1,8 @@
 /* page.c: puts the data of a run between the two halves of page.html, as JSON with numbers in base 64.
  *
  * Positions are 16-bit integers within a box for each row: {left, bottom, size / 65535}. */
+#include "view/page.h"
+
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -11,7 +13,6 @@
 #include "base/version.h"
 #include "result/durable.h"
 #include "result/result_reader.h"
-#include "view/export.h"
 #include "view/outline.h"
 #include "wake/wake.h"
 

@@ -1,4 +1,6 @@
 /* vtk.c: writes VTK's XML files of lines, polygons and points, with numbers in base 64. */
+#include "view/vtk.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdint.h>
@@ -9,7 +11,6 @@
 #include "base/text.h"
 #include "result/durable.h"
 #include "result/result_reader.h"
-#include "view/export.h"
 #include "view/outline.h"
 #include "wake/wake.h"
 

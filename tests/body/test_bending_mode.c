@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "body/bending_mode.h"
 #include "body/rod.h"
 #include "school.h"
 

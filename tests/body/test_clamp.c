@@ -6,6 +6,7 @@
 #include "fish/fish_motion.h"
 #include "school.h"
 #include "school/residual.h"
+#include "school/residual_jacobian.h"
 
 #define TIME "time: {end: 2, shedding_interval: 0.01}\n"
 #define SMALL TIME "defaults: {fish: {nodes: 7}}\n"

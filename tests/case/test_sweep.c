@@ -6,6 +6,8 @@
 #include "case/case.h"
 #include "case/sweep.h"
 #include "case/sweep_error.h"
+#include "case/sweep_expect.h"
+#include "case/sweep_quantity.h"
 #include "case_fixture.h"
 
 TEST(a_sweep_keeps_its_values_as_assignments_take_them) {

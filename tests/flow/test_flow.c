@@ -6,7 +6,9 @@
 #include "base/mathematics.h"
 #include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
+#include "flow/flow_at_wake.h"
 #include "flow/flow_derivative.h"
+#include "flow/flow_external.h"
 #include "school.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"

@@ -7,6 +7,8 @@
 #include "failing_malloc.h"
 #include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
+#include "flow/flow_at_wake.h"
+#include "flow/flow_leg_rate.h"
 #include "school.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"

@@ -4,6 +4,8 @@
 
 #include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
+#include "flow/flow_at_wake.h"
+#include "flow/flow_leg_rate.h"
 #include "school.h"
 #include "wake/stretch.h"
 

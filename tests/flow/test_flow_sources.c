@@ -5,7 +5,9 @@
 
 #include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
+#include "flow/flow_at_wake.h"
 #include "flow/flow_derivative.h"
+#include "flow/flow_external.h"
 #include "school.h"
 #include "third_kernel.h"
 

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "flow/flow.h"
+#include "flow/images.h"
 #include "flow/kernel.h"
 #include "school.h"
 

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "body/bending_mode.h"
 #include "body/rod.h"
 #include "fish/fish_school.h"
 #include "force/pressure.h"

@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "school.h"
+#include "solver/dense_factors.h"
 #include "solver/fish_factors.h"
 
 struct cost {

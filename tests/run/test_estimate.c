@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 #include <time.h>
 
+#include "run/estimate.h"
 #include "run/simulate.h"
 #include "school.h"
 

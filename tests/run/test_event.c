@@ -5,6 +5,7 @@
 
 #include "flow/flow_at_bodies.h"
 #include "force/bound_sheet.h"
+#include "run/event.h"
 #include "run/simulate.h"
 #include "school.h"
 #include "school/diagnostics_energy.h"

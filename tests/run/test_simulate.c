@@ -10,6 +10,7 @@
 #include "run/checkpoints.h"
 #include "run/simulate_run.h"
 #include "school.h"
+#include "school/residual_jacobian.h"
 #include "solver/sundials.h"
 
 #define TIME "time: {end: 0.5, shedding_interval: 0.02}\n"

@@ -2,6 +2,7 @@
  * doc/model.md, section 13. */
 #include <stdio.h>
 
+#include "run/event.h"
 #include "run/simulate.h"
 #include "school.h"
 #include "school/diagnostics_energy.h"

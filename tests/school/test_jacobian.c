@@ -7,6 +7,7 @@
 #include "school.h"
 #include "school/jacobian.h"
 #include "school/residual.h"
+#include "school/residual_jacobian.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 

@@ -5,6 +5,7 @@
 #include "fish/fish_motion.h"
 #include "school.h"
 #include "school/residual.h"
+#include "school/residual_jacobian.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 #define SMALL TIME "defaults: {fish: {nodes: 5, sheet_points: 26}}\n"

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "body/bending_mode.h"
 #include "body/rod.h"
 #include "flow/flow_at_bodies.h"
 #include "school.h"

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "school.h"
+#include "solver/dense_factors.h"
 #include "solver/fish_factors.h"
 
 static unsigned seed = 1;

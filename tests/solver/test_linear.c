@@ -7,6 +7,8 @@
 
 #include "school.h"
 #include "school/residual.h"
+#include "school/residual_jacobian.h"
+#include "solver/dense_factors.h"
 #include "solver/fish_factors.h"
 #include "solver/linear.h"
 

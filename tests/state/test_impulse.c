@@ -2,6 +2,7 @@
 #include <stdio.h>
 
 #include "school.h"
+#include "state/impulse.h"
 #include "state/state.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"

@@ -6,6 +6,7 @@
 #include "force/bound_sheet.h"
 #include "school/diagnostics_energy.h"
 #include "school/rigid.h"
+#include "steady/steady_search.h"
 #include "steady_setup.h"
 
 // mean speed, and change of the heading, over the last of some beats of a run

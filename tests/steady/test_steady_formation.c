@@ -1,4 +1,5 @@
 /* test_steady_formation.c: stable places of fish in a formation. doc/steady.md. */
+#include "steady/steady_search.h"
 #include "steady_setup.h"
 
 // two heaving plates, from this initial place of the follower

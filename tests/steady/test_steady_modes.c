@@ -5,7 +5,9 @@
 #include <string.h>
 
 #include "school.h"
+#include "steady/steady_modes.h"
 #include "steady/steady_problem.h"
+#include "steady/steady_static.h"
 
 enum { MOST = 2 * STEADY_QUANTITIES };
 

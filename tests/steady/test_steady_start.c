@@ -8,6 +8,7 @@
 #include "fish/fish_motion.h"
 #include "school.h"
 #include "steady/steady_problem.h"
+#include "steady/steady_start.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02}\n"
 enum { N_FISH = 2, N_NODES = 5 };

@@ -7,7 +7,9 @@
 #include "fish/fish_motion.h"
 #include "flow/flow_at_bodies.h"
 #include "school.h"
+#include "steady/steady_modes.h"
 #include "steady/steady_problem.h"
+#include "steady/steady_static.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"
 #define PLATE                              \

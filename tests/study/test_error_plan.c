@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "base/text.h"
+#include "case/case_value.h"
 #include "case_fixture.h"
 #include "study/error_plan.h"
 #include "study/study_file.h"

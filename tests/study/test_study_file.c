@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "base/text.h"
+#include "case/sweep_quantity.h"
 #include "case_fixture.h"
 #include "crafted_file.h"
 #include "study/convergence.h"

@@ -8,7 +8,9 @@
 #include <stdlib.h>
 
 #include "linear_theory.h"
+#include "steady/steady_modes.h"
 #include "steady/steady_problem.h"
+#include "steady/steady_static.h"
 #include "verify.h"
 
 static const double pi = 3.14159265358979323846;

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "steady/steady_search.h"
 #include "verify.h"
 
 struct swim {

@@ -15,6 +15,7 @@
 #include "fish/fish_motion.h"
 #include "school/diagnostics_energy.h"
 #include "school/residual.h"
+#include "school/residual_jacobian.h"
 #include "verify.h"
 
 enum { N_LEVELS = 4 };

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "run/event.h"
 #include "run/simulate.h"
 #include "verify.h"
 

@@ -11,6 +11,7 @@
 #include "flow/flow_at_bodies.h"
 #include "flow/flow_derivative.h"
 #include "school/residual.h"
+#include "school/residual_jacobian.h"
 #include "solver/linear.h"
 #include "solver/sundials.h"
 #include "verify.h"

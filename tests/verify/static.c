@@ -5,6 +5,7 @@
 
 #include "linear_theory.h"
 #include "steady/steady_problem.h"
+#include "steady/steady_static.h"
 #include "verify.h"
 
 static const double pi = 3.14159265358979323846;

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "steady/steady_modes.h"
+#include "steady/steady_search.h"
 #include "verify.h"
 
 // ---- one fish, against a run of two hundred beats

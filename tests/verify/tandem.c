@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "linear_theory.h"
+#include "steady/steady_modes.h"
+#include "steady/steady_search.h"
 #include "verify.h"
 
 static const double pi = 3.14159265358979323846;

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "steady/steady_search.h"
 #include "verify.h"
 
 static const double pi = 3.14159265358979323846;

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 
 #include "flow/flow.h"
+#include "flow/flow_at_wake.h"
 #include "verify.h"
 
 static const double pi = 3.14159265358979323846;

@@ -6,9 +6,11 @@
 #include "crafted_file.h"
 #include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
+#include "flow/flow_external.h"
 #include "run/simulate_run.h"
 #include "school.h"
 #include "view/field_file.h"
+#include "view/field_row.h"
 
 enum { N_POINTS = 60 };
 

@@ -6,7 +6,7 @@
 #include "result/result_reader.h"
 #include "result_fixture.h"
 #include "study/study_folder.h"
-#include "view/export.h"
+#include "view/page.h"
 
 // ---- the reader
 

@@ -4,6 +4,7 @@
 
 #include "run/simulate.h"
 #include "school.h"
+#include "state/impulse.h"
 #include "state/state.h"
 #include "wake/sheet.h"
 #include "wake/stretch.h"

@@ -3,6 +3,7 @@
 
 #include "base/mathematics.h"
 #include "school.h"
+#include "state/impulse.h"
 #include "state/state.h"
 #include "wake/wake.h"
 

@@ -1,0 +1,46 @@
+/* impulse.h: impulse of vortices, and impulse lost by wakes in decay and by the removal of vortices and markers.
+ * doc/model.md, section 13. Tested by tests/state/test_impulse.c.
+ *
+ * In the plane a vortex of circulation G at x has the impulse -rho w E3 x G and the angular impulse -rho w |x|^2 G/2
+ * about the origin, with the depth w of the fish. */
+#ifndef IMPULSE_H
+#define IMPULSE_H
+
+#include "state/state.h"
+
+/* Sums over vortices of circulation, m2 s-1, times 1, x, y, x^2 + y^2, x y. */
+struct impulse_moments {
+    double circulation, x, y, square, product;
+};
+
+/* Add a vortex to the sums. */
+void impulse_add(struct impulse_moments *sum, double circulation, double x, double y);
+
+/* Add a stretch of a vortex sheet: half of the circulation at each end. */
+void impulse_add_stretch(struct impulse_moments *sum, double circulation, const double one[2], const double other[2]);
+
+/* Sums over the released vortices of a wake, or over the stretches between markers, at time t + tau, t being the time
+ * of the event; circulations include the decay, as in velocity sums. */
+struct impulse_moments impulse_of_wake(const struct wake *wake, const struct school *school, double t, double tau);
+
+/* Impulse in x and y, N s, and angular impulse, N m s, of vortices; factor: density times depth, kg m-2. */
+void impulse_of(const struct impulse_moments *sum, double factor, double impulse[3]);
+
+/* The depth of a fish, m; NaN if the depth varies along the body. */
+double impulse_depth(const struct fish *fish);
+
+/* Lost circulation of a wake, tau after the event at time t: removed vortices, and decayed circulation. */
+double impulse_lost_circulation(const struct wake *wake, const struct school *school, double t, double tau);
+
+/* impulse_fade: book the moments that decay in the wake of fish f between the event of the state and the next event;
+ * call before the wake moves. impulse_thin_wake: remove old vortices, and drop markers, at the event of the state after
+ * the release, and book what changes. With wake.removed_circulation: dropped, the lost circulation returns to the body,
+ * and is booked at the tail. */
+void impulse_fade(const struct school *school, struct state *state, int f);
+void impulse_thin_wake(const struct school *school, struct state *state, int f);
+
+/* Book the loss of a wake that has changed at an event: before minus after. */
+void impulse_book(struct momentum_balance *momentum, const struct impulse_moments *before,
+                  const struct impulse_moments *after);
+
+#endif
