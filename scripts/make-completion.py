@@ -88,7 +88,8 @@ def main(about, table):
             f"            else COMPREPLY=({files.strip()}); fi ;;"
         )
         for option in command["options"]:
-            if not option["argument"] or option["name"] == "set":
+            # the value of an optional argument is in the same word
+            if not option["argument"] or option["argument"].startswith("[") or option["name"] == "set":
                 continue
             ways = [f"--{option['name']}"] + ([f"-{option['letter']}"] if option["letter"] else [])
             reply = {"PATH": '$(compgen -f -- "$cur")', "FOLDER": '$(compgen -d -- "$cur")'}.get(option["argument"], "")

@@ -44,7 +44,9 @@ def tail(page):
 def option_lines(option):
     """One option of a command: names and meaning."""
     names = [bold("-" + option["letter"])] if option["letter"] else []
-    names.append(bold("--" + option["name"]) + (f" \\fI{text(option['argument'])}\\fR" if option["argument"] else ""))
+    argument = option["argument"] or ""
+    blank = " " if argument and not argument.startswith("[") else ""
+    names.append(bold("--" + option["name"]) + (f"{blank}\\fI{text(argument)}\\fR" if argument else ""))
     return [".TP", ", ".join(names), text(option["meaning"])]
 
 

@@ -31,7 +31,8 @@ NESTED = {
     "list of expectations": {**LIST, "items": OBJECT},
     "defaults": section({"fish": FISH}),
     "error": section({"of": ONE_OR_MORE, "within": POSITIVE, "most": POSITIVE, "confirm": BOOLEAN, "models": BOOLEAN,
-                      "keys": {"type": ["string", "array", "object"]}, "against": {"type": ["string", "number"]}}),
+                      "keys": {"type": ["string", "array", "object"]}, "against": {"type": ["string", "number"]},
+                      "sensitivity": {"type": ["boolean", "string", "array"]}, "uncertain": OBJECT}),
 }
 
 

@@ -1,6 +1,7 @@
 """Pictures of studies: study.nc of `shoal study`, and the file of `shoal compare`, which is one. Used by shoal.plot.
 
     the errors of a case            what each key has in them, and the values at its levels
+    the sensitivities of a case     a bar for each number of the case
     errors along a sweep            values with error bars over the first swept number, and the errors in per cent
     a refined axis                  the error of each level by Richardson with the next finer one, over the grid spacing, with a
                                     triangle of the design slope and the orders that are accepted; with another axis of three
@@ -344,6 +345,27 @@ def plot_budget(study, figure):
         draw_levels(right, study, quantity, keys, part, fish)
         right.set_xlabel("levels of each key")
         legend_above(right, 3)
+
+
+def plot_sensitivity(study, figure):
+    """d ln Q/d ln p of each quantity by each input, with the errors, a panel per quantity: the inputs as those of the first
+    fall in size."""
+    asked = [name[len("stated_") :] for name in study.data.variables if name.startswith("stated_") and "_change_" not in name]
+    inputs = np.flatnonzero((study["key_is_choice"] == 2) & (study["key_levels"] > 1))
+    fish = 0  # the others are in error.csv
+    size = np.abs(study[f"sensitivity_{asked[0]}"][inputs, fish])
+    inputs = inputs[np.argsort(-np.nan_to_num(size))]
+    names = [str(study.data["key_name"][k]).strip("\0").removeprefix("fish.") for k in inputs]
+    figure.set_figheight(0.9 + 0.2 * len(inputs))
+    panels = figure.subplots(1, len(asked), sharey=True, squeeze=False)[0]
+    for axes, quantity in zip(panels, asked):
+        value, error = (study[f"{kind}_{quantity}"][inputs, fish] for kind in ("sensitivity", "sensitivity_error"))
+        colours = ["#0072b2" if one > 0 else "#d55e00" for one in value]
+        axes.barh(-np.arange(len(inputs)), value, xerr=error, color=colours, error_kw={"lw": 0.8, "capsize": 2})
+        axes.axvline(0, color="black", lw=0.8)
+        axes.set_xlabel(f"change of {study.label(quantity).split(' [')[0]}\n[% for 1 %]")
+        axes.grid(axis="x", lw=0.3, color=GRID)
+    panels[0].set_yticks(-np.arange(len(inputs)), names, size=7)
 
 
 def draw_range(axes, value, bar, low, high):
@@ -805,7 +827,8 @@ def draw(path, figure, asked=None, relative=False, states=(), reference=None):
     if "point_member" in study.data.variables:
         return plot_points(study, figure, asked)
     if "key_name" in study.data.variables:
-        return plot_budget(study, figure)
+        is_input = study["key_is_choice"] == 2
+        return (plot_sensitivity if is_input.all() else plot_budget)(study, figure)
     if not study.axes:
         raise FileError(f"{path}: a study without a sweep has nothing to draw")
     if not study.complete.any():

@@ -89,6 +89,7 @@ def _words(command, arguments, assignments):
 # the arguments of Python for the options that messages of the program name
 _ARGUMENTS = {"--force": "overwrite=True", "-o": "path", "--from": "start", "--set": "assignments", "-j": "processes",
               "--within": "within", "--against": "against", "--of": "of", "--models": "models=True", "--sweep": "sweep",
+              "--sensitivity": "sensitivity", "--uncertain": "uncertain",
               "--end": "end", "--at": "at", "--grid": "grid", "--box": "box", "--methods": "methods", "--rtol": "rtol",
               "--steps": "steps", "--limit": "limit", "--vtk": "folder"}
 
@@ -391,12 +392,17 @@ class Estimate(NamedTuple):
     unit: str  #: for example "m s-1"
     flags: list[str]  #: per flagged key, why the levels of the key are not accepted
     models: tuple[float, float] | None = None  #: lowest and highest value with other choices of the model
+    sensitivity: Mapping = {}  #: d ln Q/d ln p and its error by the paths of the inputs p: {"fish.body.modulus": (-0.29, 0.001)}
     at: Mapping = {}  #: along a sweep, the swept keys with their values at this point; numbers where they are numbers
 
     def __float__(self):
         return float(self.value)
 
     def __str__(self):
+        if np.isnan(self.error) and self.sensitivity:
+            return f"{self.quantity}{' of ' + self.fish if self.fish else ''}: {self.value:.5g} {self.unit}; d ln Q/d ln p by " + ", ".join(
+                f"{key} {value:+.4g} ± {error:.1g}" for key, (value, error) in
+                sorted(self.sensitivity.items(), key=lambda one: -abs(one[1][0])))
         digits = max(0, 1 - int(np.floor(np.log10(self.error)))) if 0 < self.error < np.inf else 6
         number = f"{self.value:.{digits}f} ± {self.error:.{digits}f} {self.unit}"
         others = f"; other models: {self.models[0]:.4g} to {self.models[1]:.4g}" if self.models else ""
@@ -412,7 +418,8 @@ def _number_or_text(text: str):
 
 
 def error(case, of, within: float | None = None, models: bool = False, against=None, assignments=None, path=None,
-          overwrite: bool = False, processes: int | None = None, progress: bool | None = None, folder=None) -> list[Estimate]:
+          overwrite: bool = False, processes: int | None = None, progress: bool | None = None, folder=None,
+          sensitivity=None, uncertain: Mapping | None = None, start=None) -> list[Estimate]:
     """Vary every numerical key of a case by `shoal error`; returns quantities with their error bars, per fish and, of a case
     with a sweep, per point of the sweep, whose swept values are in `at`.
 
@@ -420,6 +427,10 @@ def error(case, of, within: float | None = None, models: bool = False, against=N
     models: repeat the numbers with other choices of the model. against: the path of another case, "FISH=FISH", or along
     a sweep "first" or another value of the swept key: adds the quantities ``ratio_...`` and ``change_...``, whose errors are those
     of the comparison: what both share cancels.
+    sensitivity: True, or a list of keys such as "body.modulus": the derivatives d ln Q/d ln p by these numbers of the case, in
+    `sensitivity` of each estimate, in place of errors, which are NaN. uncertain: {key: part}, as {"modulus": 0.1} or "10%": adds
+    the uncertainty of these numbers to the errors.
+    start: the result of a steady state that the first search starts from.
     path: of the folder of the members, study.nc and error.csv (None: the name of the case with -error). An error that
     cannot be made smaller than within is a shoal.Error.
     """
@@ -427,6 +438,16 @@ def error(case, of, within: float | None = None, models: bool = False, against=N
     options += [] if within is None else ["--within", repr(number_of(within, "within"))]
     options += ["--models"] if models else []
     options += [] if against is None else ["--against", os.fsdecode(text_of(against, "against"))]
+    if sensitivity is not None and sensitivity is not False:
+        keys = [] if sensitivity is True else [sensitivity] if isinstance(sensitivity, str) else list(sensitivity)
+        if sensitivity is not True and not keys:
+            raise CaseError("error: sensitivity is True, a key or a list of keys, not an empty list")
+        options += ["--sensitivity" + "".join(f"{',' if i else '='}{_path(key, 'sensitivity')}" for i, key in enumerate(keys))]
+    if uncertain is not None and not isinstance(uncertain, Mapping):
+        raise TypeError(f"uncertain is a dict of keys with the uncertain part of each, not {kind(uncertain)}")
+    for key, part in (uncertain or {}).items():
+        options += ["--uncertain", f"{_path(key, 'uncertain')}={part if isinstance(part, str) else repr(number_of(part, 'uncertain'))}"]
+    options += [] if start is None else ["--from", _path(start, "start")]
     path = _run_study("error", case, assignments, path, overwrite, processes, progress, folder, options)
     found: dict = {}
     with open(os.path.join(path, "error.csv"), encoding="utf-8", newline="") as file:
@@ -435,12 +456,15 @@ def error(case, of, within: float | None = None, models: bool = False, against=N
         for row in rows:
             at = {key: _number_or_text(row[key]) for key in swept}
             place = row["fish"], row["quantity"], *at.values()
-            if row["key"] == "sum":
-                found[place] = Estimate(*place[:2], float(row["value"]), float(row["error"]), row["unit"], [], at=at)
+            if row["quantity"].startswith("sensitivity_"):
+                of_quantity = found[(row["fish"], row["quantity"].removeprefix("sensitivity_"), *at.values())]
+                of_quantity.sensitivity[row["key"]] = float(row["value"]), float(row["error"])
+            elif row["key"] == "sum":
+                found[place] = Estimate(*place[:2], float(row["value"]), float(row["error"]), row["unit"], [], sensitivity={}, at=at)
             elif row["key"] in ("lowest", "highest"):
                 found[place] = found[place]._replace(models=(found[place].models or ()) + (float(row["value"]),))
             elif row["verdict"] not in ("accepted", "differences are below the noise",
-                                        "a choice of the model, not in the sum"):
+                                        "a choice of the model, not in the sum", "an input, in quadrature"):
                 found[place].flags.append(f"{row['key']}: {row['verdict']}")
     return list(found.values())
 

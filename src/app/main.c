@@ -55,8 +55,26 @@ static const struct command commands[] = {
     {"error",
      "CASE",
      "give results an error bar: vary each numerical key of a case and see what changes",
-     {'o', 'j', OPTION_OF, OPTION_WITHIN, OPTION_AGAINST, OPTION_SWEEP, OPTION_NO_CONFIRM, OPTION_MODELS, OPTION_PLAN,
-      OPTION_LIMIT, OPTION_FORCE, OPTION_STRICT, OPTION_SET, OPTION_THREADS, OPTION_MAX_WALL, 'q', 'h'},
+     {'o',
+      'j',
+      OPTION_OF,
+      OPTION_WITHIN,
+      OPTION_AGAINST,
+      OPTION_SWEEP,
+      OPTION_NO_CONFIRM,
+      OPTION_MODELS,
+      OPTION_SENSITIVITY,
+      OPTION_UNCERTAIN,
+      OPTION_FROM,
+      OPTION_PLAN,
+      OPTION_LIMIT,
+      OPTION_FORCE,
+      OPTION_STRICT,
+      OPTION_SET,
+      OPTION_THREADS,
+      OPTION_MAX_WALL,
+      'q',
+      'h'},
      "folder of the members (default: the name of the case file with -error)",
      main_error},
     {"gather",
@@ -221,6 +239,7 @@ static enum status main_choose(int argc, char **argv, struct arena **arena) {
     NEW(*arena, request.assignments, argc + 1);
     NEW(*arena, request.of, argc + 1);
     NEW(*arena, request.sweeps, argc + 1);
+    NEW(*arena, request.uncertain, argc + 1);
 
     // getopt starts after the name of the command
     enum status status = STATUS_OK;

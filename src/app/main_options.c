@@ -3,6 +3,7 @@
 #include "app/main_options.h"
 
 #include <getopt.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,6 +43,11 @@ static const struct option_help all_options[] = {
     {OPTION_NO_CONFIRM, "no-confirm", NULL,
      "leave out the finest level of each key, which takes less time but gives wider error bars"},
     {OPTION_MODELS, "models", NULL, "also give the value with other choices of the model, such as force and friction"},
+    {OPTION_SENSITIVITY, "sensitivity", "[=KEYS]",
+     "give d ln Q/d ln p of each quantity Q instead of errors, for all numbers p of the case or for KEYS, such as "
+     "=modulus,wave.frequency"},
+    {OPTION_UNCERTAIN, "uncertain", "KEY=PART",
+     "add the uncertainty of a number of the case to the error, such as modulus=10%; may be repeated"},
     {OPTION_MEMBERS, "members", "A-B", "run only member A, or members A to B, without gathering"},
     {OPTION_VTK, "vtk", "FOLDER", "write VTK files for ParaView into this folder"},
     {OPTION_FORCE, "force", NULL, "overwrite existing results"},
@@ -71,6 +77,11 @@ static const struct option_help all_options[] = {
 
 enum { N_OPTIONS = sizeof all_options / sizeof *all_options };
 
+/* Whether an argument, "[=KEYS]", may be missing. */
+static bool is_optional(const char *argument) {
+    return argument[0] == '[';
+}
+
 static const struct option_help *option_of(int code) {
     const struct option_help *option = all_options;
     while (option->code != code) option++;
@@ -92,7 +103,8 @@ void main_print_help(const struct command *command, FILE *stream) {
         const struct option_help *option = option_of(command->options[i]);
         char names[64];
         snprintf(names, sizeof names, "%s--%s%s%s", option->code < OPTION_SET ? "-x, " : "    ", option->name,
-                 option->argument ? " " : "", option->argument ? option->argument : "");
+                 option->argument && !is_optional(option->argument) ? " " : "",
+                 option->argument ? option->argument : "");
         if (option->code < OPTION_SET) names[1] = (char)option->code;
         fprintf(stream, "  %-24s ", names);
         struct arena *const arena = arena_create(NULL, "the meaning of an option");
@@ -162,6 +174,8 @@ static void take_option(struct request *request, int code, char *argument) {
         case OPTION_PLAN: request->plan = 1; break;
         case OPTION_NO_CONFIRM: request->no_confirm = 1; break;
         case OPTION_MODELS: request->models = 1; break;
+        case OPTION_SENSITIVITY: request->sensitivity = argument ? argument : ""; break;
+        case OPTION_UNCERTAIN: request->uncertain[request->n_uncertain++] = argument; break;
         case OPTION_FROM: request->from = argument; break;
         case OPTION_AT: request->at = argument; break;
         case OPTION_GRID: request->grid = argument; break;
@@ -202,7 +216,10 @@ int main_parse(const struct command *command, int argc, char **argv, struct requ
 
     for (int i = 0; command->options[i]; i++) {
         const struct option_help *from = option_of(command->options[i]);
-        options[i] = (struct option){from->name, from->argument ? required_argument : no_argument, NULL, from->code};
+        const int has_argument = !from->argument               ? no_argument
+                                 : is_optional(from->argument) ? optional_argument
+                                                               : required_argument;
+        options[i] = (struct option){from->name, has_argument, NULL, from->code};
         if (from->code < OPTION_SET) {
             const size_t end = strlen(letters);
             letters[end] = (char)from->code;

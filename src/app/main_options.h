@@ -41,7 +41,9 @@ enum option_code {
     OPTION_SWEEP,
     OPTION_PLAN,
     OPTION_NO_CONFIRM,
-    OPTION_MODELS
+    OPTION_MODELS,
+    OPTION_SENSITIVITY,
+    OPTION_UNCERTAIN
 };
 
 /* The parsed command line. A string is NULL if the option is absent. */
@@ -65,6 +67,9 @@ struct request {
     const char *within;
     const char *against;
     int plan, no_confirm, models;
+    const char *sensitivity; /* "": all */
+    int n_uncertain;
+    const char **uncertain; /* of --uncertain, "KEY=PART" */
     const char *from;
     const char *at, *grid, *box;
     const char *vtk;
@@ -75,7 +80,7 @@ struct request {
  * --output, and the function that runs the command. */
 struct command {
     const char *name, *positional, *summary;
-    int options[20]; /* 0 at the end */
+    int options[24]; /* 0 at the end */
     const char *output;
     enum status (*run)(const struct request *request);
 };

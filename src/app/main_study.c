@@ -45,6 +45,7 @@ static enum status study_options_from(const struct request *request, const char 
                                       struct study_options *options) {
     *options = (struct study_options){.folder = folder,
                                       .command = request->command_line,
+                                      .from = request->from,
                                       .last = -1,
                                       .force = request->force,
                                       .progress = request->quiet ? NULL : say_progress_study,
@@ -210,6 +211,34 @@ static enum status set_against(const struct request *request, const struct case_
     return STATUS_OK;
 }
 
+/* Add the inputs of the command line to the assignment of `error`, whose last brace they precede; the case reads their
+ * names. */
+static enum status add_inputs(const struct request *request, struct text *assignment) {
+    assignment->text[--assignment->length] = '\0';
+    if (request->sensitivity) {
+        // each key in quotes: fish[*].length has brackets
+        const char *key = request->sensitivity;
+        text_add(assignment, *key ? ", sensitivity: [" : ", sensitivity: true");
+        for (int length; *key; key += length + (key[length] == ',')) {
+            length = (int)strcspn(key, ",");
+            text_add(assignment, "%s\"%.*s\"", key == request->sensitivity ? "" : ", ", length, key);
+        }
+        if (*request->sensitivity) text_add(assignment, "]");
+    }
+    for (int i = 0; i < request->n_uncertain; i++) {
+        const char *const one = request->uncertain[i], *const part = strchr(one, '=');
+        double value;
+        if (!part || part == one || !sweep_error_part(part + 1, &value)) {
+            return status_fail(STATUS_CASE, "--uncertain %s: expects KEY=PART, such as modulus=10%%", one);
+        }
+        text_add(assignment, "%s", i == 0 ? ", uncertain: {" : ", ");
+        text_add(assignment, "\"%.*s\": ", (int)(part - one), one);
+        text_add_number(assignment, value);
+    }
+    text_add(assignment, request->n_uncertain > 0 ? "}}" : "}");
+    return STATUS_OK;
+}
+
 enum status main_error(const struct request *request) {
     struct case_values values;
     struct request with_errors = *request;
@@ -250,9 +279,14 @@ enum status main_error(const struct request *request) {
     if (request->within) TRY(study_read_number("--within", request->within, 0, &error.within));
     if (request->no_confirm) error.confirm = 0;
     if (request->models) error.models = 1;
+    if (request->sensitivity || request->n_uncertain > 0) {
+        error.sensitivity = false;
+        error.n_inputs = 0;
+    }
     if (request->against) TRY(set_against(request, &values, &error));
     text_add(&assignment, "error=");
     sweep_error_write(&assignment, &error);
+    if (request->sensitivity || request->n_uncertain > 0) TRY(add_inputs(request, &assignment));
     with_errors.assignments[with_errors.n_assignments++] = assignment.text;
 
     TRY(main_read_case(&with_errors, &values));

@@ -34,6 +34,41 @@ const struct sweep_error_key sweep_error_keys[SWEEP_N_ERROR_KEYS] = {
     {"fish.body.tail_thickness", NULL, SWEEP_MODEL, {2, 0}, 0.5, .order = 1},
 };
 
+#define INPUT .kind = SWEEP_INPUT, .order = NAN
+#define WITH(path, value) .switch_path = path, .switch_value = value
+const struct sweep_error_key sweep_inputs[SWEEP_N_INPUTS] = {
+    {"fish.length", INPUT},
+    {"fish.body.thickness", INPUT},
+    {"fish.body.tail_thickness", INPUT, WITH("fish.body.profile", PROFILE_JOUKOWSKI)},
+    {"fish.body.depth", INPUT},
+    {"fish.body.density", INPUT},
+    {"fish.body.modulus", INPUT},
+    {"fish.body.bending_damping", INPUT},
+    {"fish.body.stretching_damping", INPUT},
+    {"fish.body.relaxation_time", INPUT},
+    {"fish.wave.amplitude", INPUT},
+    {"fish.wave.constant", INPUT},
+    {"fish.wave.linear", INPUT},
+    {"fish.wave.quadratic", INPUT},
+    {"fish.wave.number", INPUT},
+    {"fish.wave.frequency", INPUT},
+    {"fish.motion.speed", INPUT},
+    {"fish.motion.heave", INPUT},
+    {"fish.motion.pitch", INPUT},
+    {"fish.motion.frequency", INPUT},
+    {"fish.drag.tangential", INPUT, WITH("fish.drag.skin", FRICTION_QUADRATIC)},
+    {"fish.drag.transition", INPUT, OF_LAYER},
+    {"fish.drag.waving", INPUT, OF_LAYER},
+    {"fish.drag.form", INPUT, OF_LAYER},
+    {"fish.drag.normal", INPUT},
+    {"fish.pressure.suction", INPUT, OF_PRESSURE},
+    {"fish.pressure.suction_limit", INPUT, OF_PRESSURE},
+    {"fluid.density", INPUT},
+    {"fluid.viscosity", INPUT},
+    {"wake.smoothing", INPUT},
+    {"sheet.smoothing", INPUT},
+};
+
 const struct sweep_error_key *sweep_error_find(const char *path) {
     for (int i = 0; i < SWEEP_N_ERROR_KEYS; i++) {
         if (strcmp(sweep_error_keys[i].path, path) == 0) return &sweep_error_keys[i];
@@ -173,6 +208,105 @@ static void read_against(const struct case_values *values, struct sweep_error *e
     }
 }
 
+bool sweep_error_part(const char *text, double *part) {
+    char number[64];
+    const size_t length = strlen(text);
+    const bool is_percent = length > 1 && text[length - 1] == '%';
+    size_t n = length - is_percent;
+    while (is_percent && n > 0 && text[n - 1] == ' ') n--;
+    if (n >= sizeof number) return false;
+    memcpy(number, text, n);
+    number[n] = '\0';
+    if (!text_number(number, part)) return false;
+    if (is_percent) *part /= 100;
+    return *part > 0 && isfinite(*part);
+}
+
+/* Whether a name is the path of an input or the last words of it: "fish[*].body.modulus", "body.modulus", "modulus". */
+static bool is_input(const char *name, const char *path) {
+    if (strncmp(name, "fish[*].", 8) == 0) return strncmp(path, "fish.", 5) == 0 && strcmp(name + 8, path + 5) == 0;
+    const size_t n = strlen(name), length = strlen(path);
+    return n <= length && strcmp(path + length - n, name) == 0 && (n == length || path[length - n - 1] == '.');
+}
+
+/* Add an input by its name. */
+static void read_input(struct sweep_error *error, const char *name, double uncertainty, struct yaml_mark mark,
+                       const char *place, struct yaml_errors *errors) {
+    struct text known = {.arena = errors->arena}, found = {.arena = errors->arena};
+    const struct sweep_error_key *key = NULL;
+    int n_found = 0;
+    for (int i = 0; i < SWEEP_N_INPUTS; i++) {
+        const char *const path = sweep_inputs[i].path;
+        text_add(&known, "%s%s", i > 0 ? ", " : "", path + (strncmp(path, "fish.", 5) == 0 ? 5 : 0));
+        if (!is_input(name, path)) continue;
+        text_add(&found, "%s%s", n_found++ > 0 ? " and " : "", path + (strncmp(path, "fish.", 5) == 0 ? 5 : 0));
+        key = &sweep_inputs[i];
+    }
+    if (n_found > 1) {
+        yaml_errors_add(errors, mark, "%s: '%.60s' is the end of several keys: %s", place, name, found.text);
+    } else if (n_found == 0) {
+        const bool is_one = strncmp(name, "fish[", 5) == 0 && name[5] != '*';
+        yaml_errors_add(errors, mark, "%s: '%.60s' is no such number%s; these are: %s", place, name,
+                        is_one ? ": fish[*] varies that of all fish in proportion" : "", known.text);
+    }
+    if (n_found != 1) return;
+    for (int i = 0; i < error->n_inputs; i++) {
+        if (error->input[i].key == key) yaml_errors_add(errors, mark, "%s: '%s' is there twice", place, key->path);
+    }
+    error->input[error->n_inputs++] = (struct sweep_error_input){key, uncertainty};
+}
+
+/* Read "sensitivity": true, a key, or a list of keys; and "uncertain": a map of keys and parts of them. */
+static void read_inputs(struct arena *arena, struct sweep_error *error, const struct yaml_node *sensitivity,
+                        const struct yaml_node *uncertain, struct yaml_errors *errors) {
+    static const char of_sensitivity[] = "error.sensitivity", of_uncertain[] = "error.uncertain";
+    if (sensitivity && sensitivity->kind == YAML_SCALAR &&
+        (strcmp(sensitivity->text, "true") == 0 || strcmp(sensitivity->text, "false") == 0)) {
+        error->sensitivity = strcmp(sensitivity->text, "true") == 0;
+    } else if (sensitivity) {
+        const int n = sensitivity->kind == YAML_LIST ? sensitivity->n : 1;
+        error->sensitivity = true;
+        NEW(arena, error->input, n > 0 ? n : 1);
+        for (int i = 0; i < n; i++) {
+            const struct yaml_node *const name =
+                sensitivity->kind == YAML_LIST ? sensitivity->entry[i].value : sensitivity;
+            if (name->kind != YAML_SCALAR) {
+                yaml_errors_add(errors, name->mark, "%s: expects true, a key or a list of keys", of_sensitivity);
+            } else {
+                read_input(error, name->text, NAN, name->mark, of_sensitivity, errors);
+            }
+        }
+        if (n == 0) yaml_errors_add(errors, sensitivity->mark, "%s: expects at least one key", of_sensitivity);
+    }
+    if (!uncertain) return;
+    if (error->sensitivity) {
+        yaml_errors_add(errors, uncertain->mark,
+                        "%s: is part of the error bar, and sensitivity gives no error bar: remove one of them",
+                        of_uncertain);
+        return;
+    }
+    if (!isnan(error->within)) {
+        yaml_errors_add(errors, uncertain->mark, "%s: no refinement makes it smaller: remove within or uncertain",
+                        of_uncertain);
+    }
+    if (uncertain->kind != YAML_MAP || uncertain->n == 0) {
+        yaml_errors_add(errors, uncertain->mark, "%s: expects a map of keys, as in {modulus: 10%%}", of_uncertain);
+        return;
+    }
+    NEW(arena, error->input, uncertain->n);
+    for (int i = 0; i < uncertain->n; i++) {
+        const struct yaml_entry *const entry = &uncertain->entry[i];
+        double part;
+        if (entry->value->kind != YAML_SCALAR || !sweep_error_part(entry->value->text, &part)) {
+            yaml_errors_add(errors, entry->value->mark,
+                            "%s: the uncertainty of '%.60s' is a part of it above 0, such as 5%% or 0.05", of_uncertain,
+                            entry->key);
+        } else {
+            read_input(error, entry->key, part, entry->mark, of_uncertain, errors);
+        }
+    }
+}
+
 void sweep_error_read(struct case_values *values, const struct yaml_node *root, struct yaml_errors *errors) {
     const struct yaml_node *const map = yaml_tree_find(root, "error");
 
@@ -184,7 +318,8 @@ void sweep_error_read(struct case_values *values, const struct yaml_node *root, 
         return;
     }
 
-    yaml_tree_check_keys(map, "error", "of, within, keys, confirm, models, most, against", errors);
+    yaml_tree_check_keys(map, "error", "of, within, keys, confirm, models, most, against, sensitivity, uncertain",
+                         errors);
     struct sweep_error *const error = NEW(values->arena, values->error, 1);
     error->within = yaml_tree_positive(map, "error", "within", NAN, errors);
     error->most = yaml_tree_positive(map, "error", "most", SWEEP_ERROR_MOST, errors);
@@ -208,6 +343,14 @@ void sweep_error_read(struct case_values *values, const struct yaml_node *root, 
     error->models = models && yaml_tree_boolean(models, "error.models", errors);
     if (keys) read_keys(values->arena, error, keys, errors);
     if (against) read_against(values, error, against, errors);
+    read_inputs(values->arena, error, yaml_tree_find(map, "sensitivity"), yaml_tree_find(map, "uncertain"), errors);
+    if (error->sensitivity && values->n_axes > 0) {
+        yaml_errors_add(errors, map->mark, "error.sensitivity: is that of one case: remove sensitivity or sweep");
+    }
+    if (error->sensitivity && (keys || error->models || !isnan(error->within))) {
+        yaml_errors_add(errors, map->mark,
+                        "error.sensitivity: replaces the numerical keys: remove it, or keys, models and within");
+    }
 
     // the quantities
     static const char expected[] = "error.of: expects the name of a quantity, or a list of names";
@@ -263,5 +406,16 @@ void sweep_error_write(struct text *text, const struct sweep_error *error) {
         if (error->levels[i].n > 0) text_add(text, "]");
     }
 
-    text_add(text, error->n_keys > 0 ? "}}" : "}");
+    if (error->n_keys > 0) text_add(text, "}");
+    if (error->sensitivity && error->n_inputs == 0) text_add(text, ", sensitivity: true");
+    for (int i = 0; i < error->n_inputs; i++) {
+        const struct sweep_error_input *const input = &error->input[i];
+        const char *const first = error->sensitivity ? ", sensitivity: [" : ", uncertain: {";
+        text_add(text, "%s%s", i == 0 ? first : ", ", input->key->path);
+        if (error->sensitivity) continue;
+        text_add(text, ": ");
+        text_add_number(text, input->uncertainty);
+    }
+    if (error->n_inputs > 0) text_add(text, error->sensitivity ? "]" : "}");
+    text_add(text, "}");
 }

@@ -1,8 +1,10 @@
-/* sweep_error.h: what an error estimate varies: the numerical keys, the choices of the model, and what a case asks for.
- * Tested by tests/case/test_sweep.c.
+/* sweep_error.h: what an error estimate varies: the numerical keys, the choices of the model and the inputs, which have
+ * sensitivities; and what a case asks for. Tested by tests/case/test_sweep.c.
  *
  *     error: {of: [steady_speed, steady_cost_of_transport], within: 0.01, keys: default, confirm: true, models: false}
  *     error: {of: steady_cost_of_transport, against: alone.yaml}     or first, 1e5, follower=leader
+ *     error: {of: steady_cost_of_transport, sensitivity: true}           or [modulus, wave.frequency]
+ *     error: {of: steady_cost_of_transport, uncertain: {modulus: 20%, drag.transition: 0.5}}
  *
  * How it is evaluated: study/error_plan.h and doc/studies.md. */
 #ifndef SWEEP_ERROR_H
@@ -18,10 +20,11 @@ enum sweep_error_kind {
     SWEEP_POINTS,   /* a number of points n: grid spacing 1/(n - 1) */
     SWEEP_SPACING,  /* the value is the grid spacing, or a tolerance */
     SWEEP_DURATION, /* the larger the better: 1/duration is the grid spacing */
-    SWEEP_MODEL     /* a choice of the model, varied with `models`: the change is printed, it is no error */
+    SWEEP_MODEL,    /* a choice of the model, varied with `models`: the change is printed, it is no error */
+    SWEEP_INPUT     /* a number of the case, varied for the derivative of a quantity */
 };
 
-/* A numerical key, or a choice of the model. */
+/* A numerical key, a choice of the model, or an input. */
 struct sweep_error_key {
     const char *path;      /* of the table of keys */
     const char *companion; /* another key that is changed in proportion; NULL: none */
@@ -36,6 +39,10 @@ struct sweep_error_key {
 
 enum { SWEEP_N_ERROR_KEYS = 20 };
 extern const struct sweep_error_key sweep_error_keys[SWEEP_N_ERROR_KEYS];
+
+/* The inputs of the model: body, gait, drag, fluid, smoothing and limits of suction. */
+enum { SWEEP_N_INPUTS = 30 };
+extern const struct sweep_error_key sweep_inputs[SWEEP_N_INPUTS];
 
 /* The row of a key by the path in the table of keys, such as "fish.nodes"; NULL: not in the table. */
 const struct sweep_error_key *sweep_error_find(const char *path);
@@ -64,6 +71,12 @@ enum sweep_against {
     AGAINST_CASE   /* another case */
 };
 
+/* A number of the case whose influence is asked for. */
+struct sweep_error_input {
+    const struct sweep_error_key *key;
+    double uncertainty; /* of the number, as a part of it; NaN: only the sensitivity is asked for */
+};
+
 struct sweep_error {
     int n_of;
     char **of;     /* names of quantities of a result or of a steady state     (n_of) */
@@ -75,7 +88,13 @@ struct sweep_error {
     char *against; /* "first" or a value, two names, or the text of the other case; NULL: nothing */
     int n_keys;
     struct sweep_error_levels *levels; /* of the keys that are varied; none: of all     (n_keys) */
+    bool sensitivity;                  /* only the derivatives of the quantities by the inputs */
+    int n_inputs;
+    struct sweep_error_input *input; /* none with sensitivity: all     (n_inputs) */
 };
+
+/* Read a part of a number: "5%", "5 %" or "0.05"; false unless it is above 0 and finite. */
+bool sweep_error_part(const char *text, double *part);
 
 /* Whether the text of `against` names the file of a case: it ends in .yaml or .yml. */
 bool sweep_error_is_file(const char *against);

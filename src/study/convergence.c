@@ -227,6 +227,49 @@ void convergence_reason(const struct convergence_levels *levels, const struct co
     }
 }
 
+// ---- derivatives
+
+/* The weights of n values in the derivative at 0 of the polynomial through them. */
+static void fill_weights(int n, const double *step, double *weight) {
+    // Lagrange's polynomials, each the product of (x - x_j)/(x_i - x_j): the derivative at 0 by the product rule
+    for (int i = 0; i < n; i++) {
+        weight[i] = 0;
+        for (int k = 0; k < n; k++) {
+            if (k == i) continue;
+            double product = 1 / (step[i] - step[k]);
+            for (int j = 0; j < n; j++) {
+                if (j != i && j != k) product *= (0 - step[j]) / (step[i] - step[j]);
+            }
+            weight[i] += product;
+        }
+    }
+}
+
+struct convergence_slope convergence_find_slope(int n, const double *step, const double *value, int base,
+                                                double noise) {
+    const struct convergence_slope unknown = {NAN, NAN};
+    if (n < 3 || n > CONVERGENCE_STEPS) return unknown;
+
+    // all values, then those nearer than the farthest
+    double farthest = 0, slope[2] = {0, 0}, squares = 0;
+    for (int i = 0; i < n; i++) farthest = fmax(farthest, fabs(step[i]));
+    for (int part = 0; part < 2; part++) {
+        double x[CONVERGENCE_STEPS], y[CONVERGENCE_STEPS], weight[CONVERGENCE_STEPS];
+        int m = 0;
+        for (int i = 0; i < n; i++) {
+            if (part == 1 && fabs(step[i]) > farthest * (1 - 1e-9)) continue;
+            x[m] = step[i];
+            y[m++] = value[i] / value[base];
+        }
+        fill_weights(m, x, weight);
+        for (int i = 0; i < m; i++) {
+            slope[part] += weight[i] * y[i];
+            if (part == 0) squares += weight[i] * weight[i] * y[i] * y[i];
+        }
+    }
+    return (struct convergence_slope){slope[0], fabs(slope[0] - slope[1]) + noise * sqrt(squares)};
+}
+
 // ---- values of members
 
 /* The member that a member is compared with. */
@@ -282,19 +325,24 @@ double convergence_noise(const struct case_values *study, const struct case_valu
     return rtol + search_error / (way > 0 ? fmin(1, is_tail ? strouhal * way : way) : 1);
 }
 
-/* The noise of a quantity of a member of an error study; that of a ratio or a difference has both parts. */
-static double study_noise(const struct error_study *study, const struct member_file *members, int m, int q, int f) {
+/* The noise of a quantity of a member of an error study; that of a ratio or a difference has both parts. is_neighbour:
+ * without the error of the integrator, which neighbours share. */
+static double study_noise(const struct error_study *study, const struct member_file *members, int m, int q, int f,
+                          bool is_neighbour) {
     if (study->relation != ERROR_VALUE) {
         const int twin = twin_of(study, m), found = error_plan_twin_fish(study, f), fish = found < 0 ? 0 : found;
-        const double own = study_noise(study->point, members, m, q, f),
-                     other = study_noise(study->twin, members, twin, q, fish);
+        const double own = study_noise(study->point, members, m, q, f, is_neighbour),
+                     other = study_noise(study->twin, members, twin, q, fish, is_neighbour);
         if (study->relation == ERROR_RATIO) return own + other;
         return (own * fabs(convergence_study_value(study->point, members, m, q, f)) +
                 other * fabs(convergence_study_value(study->twin, members, twin, q, fish))) /
                fabs(convergence_study_value(study, members, m, q, f));
     }
-    return convergence_noise(study->study, study->values, members, m, study->base, study->is_static ? 0 : study->beat,
-                             member_file_quantity(study->quantity[q])->name, f);
+    const double all =
+        convergence_noise(study->study, study->values, members, m, study->base, study->is_static ? 0 : study->beat,
+                          member_file_quantity(study->quantity[q])->name, f);
+    const bool is_of_search = is_neighbour && study->is_steady && !(study->values->solver.step > 0);
+    return is_of_search ? fmax(all - study->values->solver.rtol, rounding) : all;
 }
 
 // ---- the refined axis
@@ -427,11 +475,40 @@ struct convergence_levels convergence_study_levels(const struct error_study *stu
                                        .objection = key->objection};
 }
 
+/* The derivatives of each requested quantity by an input; times its uncertainty they are a part of the error. */
+static void judge_input(const struct error_study *study, const struct member_file *members,
+                        struct error_study_key *key) {
+    double step[ERROR_STUDY_LEVELS], value[ERROR_STUDY_LEVELS];
+    const double stated = key->value[key->stated];
+    for (int place = 0; place < study->n_asked * study->n_fish; place++) {
+        const int q = place / study->n_fish, f = place % study->n_fish;
+        double noise = 0;
+        for (int i = 0; i < key->n_levels; i++) {
+            step[i] = key->value[i] / stated - 1;
+            value[i] = convergence_study_value(study, members, key->member[i], q, f);
+            noise = fmax(noise, study_noise(study, members, key->member[i], q, f, true));
+        }
+        struct convergence_slope *const slope = &key->slope[place];
+        *slope = convergence_find_slope(key->n_levels, step, value, key->stated, noise);
+        const double part = fabs(slope->value * value[key->stated]) * key->uncertainty;
+        key->part[place] = (struct convergence_result){.verdict = CONVERGENCE_ACCEPTED,
+                                                       .error = part,
+                                                       .finest_error = NAN,
+                                                       .spread = part,
+                                                       .order = NAN,
+                                                       .coarse_order = NAN};
+    }
+}
+
 /* Judge each requested quantity of each fish by the finest levels of a key; a choice of the model by the largest
  * change. */
 static void judge_key(struct error_study *study, const struct member_file *members, struct error_study_key *key) {
     const struct case_values *const values = study->values;
     double size[ERROR_STUDY_LEVELS], value[ERROR_STUDY_LEVELS][2] = {{0}};
+    if (key->row->kind == SWEEP_INPUT) {
+        judge_input(study, members, key);
+        return;
+    }
     struct convergence_levels levels = convergence_study_levels(study, key, size);
     const int stated = key->member[key->stated];
 
@@ -463,7 +540,7 @@ static void judge_key(struct error_study *study, const struct member_file *membe
             if (!is_choice && f > 0 && !member_file_quantity(study->quantity[q])->of_fish) continue;
             for (int i = 0; i < key->n_levels; i++)
                 value[i][0] = convergence_study_value(study, members, key->member[i], q, f);
-            const double noise = study_noise(study, members, stated, q, f);
+            const double noise = study_noise(study, members, stated, q, f, false);
             if (!is_choice) {
                 *part = convergence_judge(&levels, (const double(*)[2])value, noise);
                 continue;
@@ -486,9 +563,9 @@ static void judge_key(struct error_study *study, const struct member_file *membe
     key->cost_exponent = isfinite(exponent) ? fmin(4, fmax(0, exponent)) : 1;
 }
 
-/* Whether the error of a key contributes to the sum. */
+/* Whether a key is a numerical one whose error contributes to the sum. */
 static bool is_error(const struct error_study_key *key) {
-    return key->row->kind != SWEEP_MODEL && key->n_levels > 1;
+    return key->row->kind != SWEEP_MODEL && key->row->kind != SWEEP_INPUT && key->n_levels > 1;
 }
 
 /* An error over the stated value of its quantity. */
@@ -538,7 +615,16 @@ void convergence_study_judge(struct error_study *study, const struct member_file
             study->together[place] = n_moved > 1 ? fabs(study->value[place] - moved) : 0;
             study->parts[place] = sum;
             study->error[place] = fmin(sum, fabs(shift) + spread) + study->together[place];
-            if (isnan(sum)) study->error[place] = NAN;
+            if (isnan(sum) || study->study->error->sensitivity) study->error[place] = NAN;
+
+            // uncertain inputs are independent of each other and of the numerical errors
+            double squares = 0;
+            for (int k = 0; k < study->n_keys; k++) {
+                const struct error_study_key *const key = &study->key[k];
+                if (key->slope && key->n_levels > 1) squares += key->part[place].error * key->part[place].error;
+            }
+            study->inputs[place] = sqrt(squares);
+            study->error[place] = hypot(study->error[place], study->inputs[place]);
 
             // the lowest and the highest value with other choices of the model: the stated value plus the change of the
             // case by the choice
@@ -557,7 +643,7 @@ void convergence_study_judge(struct error_study *study, const struct member_file
         }
     }
 
-    study->noise = study_noise(study, members, study->stated, 0, 0);
+    study->noise = study_noise(study, members, study->stated, 0, 0, false);
     study->cost = cost_of(study, members, study->stated) / cost_of(study, members, study->base);
     const double within = study->study->error->within;
     const int worst = find_worst(study);
@@ -578,8 +664,9 @@ void convergence_sweep_judge(struct error_sweep *sweep, const struct member_file
             const struct error_study *const point = &sweep->point[p];
             for (int k = 0; k < point->n_keys && point->is_full; k++) {
                 const double part = fabs(point->key[k].part[place].error / point->value[place]);
+                if (!is_error(&point->key[k])) continue;
                 double *const most = &largest[point->key[k].row - sweep_error_keys];
-                if (is_error(&point->key[k])) *most = isnan(part) || part > *most ? part : *most;
+                *most = isnan(part) || part > *most ? part : *most;
             }
         }
         for (int p = 0; p < sweep->n_points; p++) {
@@ -718,7 +805,7 @@ int convergence_study_refine(struct error_study *study, const struct member_file
 
 void convergence_study_say_cost(const struct error_study *study, char words[CONVERGENCE_BYTES]) {
     const double within = study->study->error->within;
-    double part[SWEEP_N_ERROR_KEYS], ratio[SWEEP_N_ERROR_KEYS], order[SWEEP_N_ERROR_KEYS], sum = 0, fixed = 0, cost = 1;
+    double part[ERROR_STUDY_KEYS], ratio[ERROR_STUDY_KEYS], order[ERROR_STUDY_KEYS], sum = 0, fixed = 0, cost = 1;
     const int place = find_worst(study);
     const char *worst = "";
 

@@ -29,7 +29,11 @@
 #include "case/sweep_quantity.h"
 #include "study/member_file.h"
 
-enum { CONVERGENCE_LEVELS = 4 /* at most so many levels are judged */, CONVERGENCE_BYTES = 256 };
+enum {
+    CONVERGENCE_LEVELS = 4, /* at most so many levels are judged */
+    CONVERGENCE_STEPS = 10, /* at most so many values give a derivative */
+    CONVERGENCE_BYTES = 256
+};
 
 enum convergence_verdict {
     CONVERGENCE_NONE,      /* all differences are below the noise */
@@ -63,6 +67,17 @@ struct convergence_result {
     double shift, spread;       /* of a number: the limit is the value at the base + shift +- spread */
     double order, coarse_order; /* p and p'; NaN: too few levels, or equal ones */
 };
+
+/* A derivative d ln Q/d ln p = p/Q dQ/dp, with its error. */
+struct convergence_slope {
+    double value, error;
+};
+
+/* The derivative of a quantity at the stated value, from n values at p (1 + step): that of the polynomial through all
+ * of them. Its error is the difference from that of the polynomial without the one or two farthest values, plus what
+ * noise, a relative error of each value, adds in quadrature. NaN: a value is missing, or fewer than three. base: the
+ * value with the step 0 */
+struct convergence_slope convergence_find_slope(int n, const double *step, const double *value, int base, double noise);
 
 /* Judge the values of one quantity at the levels, from fine to coarse: a number has y = 0, a missing value is NaN.
  * noise: relative error of a value independent of the levels, of steady search and integrator. */

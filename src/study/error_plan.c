@@ -152,6 +152,11 @@ static bool asks_for_modes(const struct error_study *study) {
     return false;
 }
 
+/* The steps of an input, as parts of it, on both sides, or on the one side that its range allows; the largest tolerance
+ * of the search at them: it moves a derivative by 4e-4 at most. */
+static const double input_steps[] = {0.04, 0.08, 0.16};
+static const double input_tolerance = 1e-5;
+
 /* The row of the case of a point with some changes. */
 static struct row make_row(const struct error_study *study, int n, const struct error_plan_change *changes) {
     const struct sweep_axis *const axis = &study->study->sweep[0];
@@ -167,9 +172,12 @@ static struct row make_row(const struct error_study *study, int n, const struct 
     for (const struct error_plan_change *change = changes; change < changes + n; change++) {
         const struct error_study_key *const key = &study->key[change->key];
         const char *const path = key->row->path, *const companion = key->row->companion;
-        const double part = change->value / plan_number_of(values, path, 0);
+        const bool is_model_input = key->row->kind == SWEEP_INPUT;
+        const double part =
+            change->value / (is_model_input ? key->value[key->first_stated] : plan_number_of(values, path, 0));
         const bool are_nodes = strcmp(path, "fish.nodes") == 0, is_choice = key->row->n_levels > 0;
-        if (!are_nodes && !(fabs(change->value - key->value[key->first_stated]) > 1e-12 * change->value)) continue;
+        const double stated = key->value[key->first_stated];
+        if (!are_nodes && !(fabs(change->value - stated) > 1e-12 * fabs(change->value))) continue;
 
         // all levels of the nodes use the sheet of the finest level
         const double finest = fmax(change->value, key->n_levels > 0 ? key->value[0] : 0);
@@ -183,11 +191,23 @@ static struct row make_row(const struct error_study *study, int n, const struct 
         }
 
         if (companion && !is_choice) row_set(&row, companion, 0, part * plan_number_of(values, companion, 0));
-        if (strcmp(path, "time.shedding_interval") != 0) continue;
+
+        // a small change of a quantity needs a small error of the search, and only the last beat; the fish beats with
+        // the same number of events
+        const bool is_beat = is_model_input && strcmp(strrchr(path, '.'), ".frequency") == 0;
+        if (is_model_input) {
+            const double most = values->steady.formation == YES ? INFINITY : input_tolerance;
+            row_set(&row, "steady.tolerance", 0, fmin(values->steady.tolerance, most));
+            row_set(&row, "steady.output_beats", 0, 1);
+        }
+        if (strcmp(path, "time.shedding_interval") != 0 && !is_beat) continue;
+        if (is_beat) row_set(&row, "time.shedding_interval", 0, values->school.shedding_interval / part);
 
         // times that must be multiples of the interval; the end time has no effect on a steady state
-        const double interval = change->value, beat = study->beat, step = values->solver.step;
+        const double interval = is_beat ? values->school.shedding_interval / part : change->value,
+                     beat = is_beat ? study->beat / part : study->beat, step = values->solver.step;
         if (study->is_steady && beat > 0) row_set(&row, "time.end", 0, beat * ceil(values->time.end / beat - 1e-9));
+        if (is_beat && !study->is_steady) row_set(&row, "time.end", 0, values->time.end / part);
         row_set(&row, "time.checkpoint_interval", 0, 0);
         const double output = interval * fmax(1, round(values->time.output_interval / interval));
         row_set(&row, "time.output_interval", 0, output);
@@ -346,6 +366,18 @@ static enum status choose_levels(struct error_study *study) {
         // the far wake converges with the design order only after two halvings of the spacing; the other keys have four
         // levels all the same: three would be judged by twice the largest difference
         const double base = key->value[0];
+        if (row->kind == SWEEP_INPUT) {
+            // two steps on both sides, else three on one
+            bool is_valid[2] = {true, true};
+            for (int i = 0; i < 4; i++) {
+                is_valid[i % 2] &= is_valid_level(study, k, base * (1 + (i % 2 ? 1 : -1) * input_steps[i / 2]));
+            }
+            const int n_steps = is_valid[0] && is_valid[1] ? 2 : 3;
+            for (int i = 0; i < 2 * n_steps; i++) {
+                const double level = base * (1 + (i % 2 ? 1 : -1) * input_steps[i / 2]);
+                if (is_valid[i % 2] && is_valid_level(study, k, level)) error_plan_insert(key, level);
+            }
+        }
         for (int i = 0; i < row->n_levels && !given; i++) {
             if (is_valid_level(study, k, row->level[i])) error_plan_insert(key, row->level[i]);
         }
@@ -368,11 +400,15 @@ static enum status choose_levels(struct error_study *study) {
             if (!isnan(level)) error_plan_insert(key, level);
         }
 
-        if (key->n_levels > 1) continue;
+        if (key->n_levels > (row->kind == SWEEP_INPUT ? 2 : 1)) continue;
+        key->value[0] = key->value[key->stated];
+        key->n_levels = 1;
+        key->stated = key->first_stated = 0;
 
         // the reason of the next finer level: the message without its place in the text
-        const double next = row->kind == SWEEP_POINTS ? round(base * row->finer) : base * row->finer;
-        const bool is_refused = row->finer > 0 && !is_valid_level(study, k, next);
+        const double finer = row->kind == SWEEP_INPUT ? 1 + input_steps[0] : row->finer;
+        const double next = row->kind == SWEEP_POINTS ? round(base * finer) : base * finer;
+        const bool is_refused = finer > 0 && !is_valid_level(study, k, next);
         const char *const message = is_refused ? strstr(status_message(), "error: ") : NULL;
         const char *const reason = message ? message + strlen("error: ") : "";
         snprintf(key->objection, CONVERGENCE_BYTES, "no other level is a valid case%s%.*s", *reason ? ": " : "",
@@ -411,13 +447,79 @@ static bool is_used(const struct error_study *study, const struct sweep_error_ke
     return !is_wake || value > 0;
 }
 
+/* Whether an input with this value affects the results of this case. */
+static bool is_used_input(const struct error_study *study, const struct sweep_error_key *row, double value) {
+    const struct case_values *const values = study->values;
+    const struct fish_parameters *const fish = &values->school.fish[0];
+    const char *const path = row->path;
+    const bool is_held = fish->motion.prescribed != PRESCRIBED_NONE;
+    if (!(fabs(value) > 0) || !isfinite(value)) return false;
+    if (row->switch_path && (int)plan_number_of(values, row->switch_path, 0) != row->switch_value) return false;
+    if (strcmp(path, "fish.drag.waving") == 0 && !(value > 1)) return false;
+    if (strcmp(path, "fish.body.thickness") == 0 || strcmp(path, "fish.body.depth") == 0) {
+        return fish->body.profile != PROFILE_TABLE;
+    }
+    if (strncmp(path, "fish.wave.", 10) == 0 && (study->is_static || !(fabs(fish->wave.amplitude) > 0))) return false;
+    if (strncmp(path, "fish.motion.", 12) == 0) {
+        return is_held && (strcmp(path, "fish.motion.speed") != 0 || fish->motion.surge == SURGE_GIVEN);
+    }
+    const bool is_damping = strstr(path, "damping") || strstr(path, "relaxation_time");
+    const bool is_elastic =
+        is_damping || strcmp(path, "fish.body.modulus") == 0 || strcmp(path, "fish.body.density") == 0;
+    if (is_elastic && fish->motion.prescribed == PRESCRIBED_ALL) return false;
+    if (study->is_static && (is_damping || strcmp(path, "fish.body.density") == 0)) return false;
+    const bool is_of_body = strcmp(path, "fish.length") == 0 || strncmp(path, "fish.body.", 10) == 0 ||
+                            strncmp(path, "fish.wave.", 10) == 0;
+    if (!is_of_body && !(values->school.fluid.density > 0)) return false;
+    return !(study->is_static && strncmp(path, "wake.", 5) == 0);
+}
+
+/* The value of an input; of a factor that follows from the body, that of the first fish of a school of one. */
+static double input_value(const struct error_study *study, const struct school *school, const char *path) {
+    const double value = plan_number_of(study->values, path, 0);
+    if (!isnan(value) || study->n_fish > 1) return value;
+    if (strcmp(path, "fish.drag.form") == 0) return school->fish->form;
+    return strcmp(path, "fish.drag.waving") == 0 ? school->fish->waving : value;
+}
+
+/* Add the inputs that the case asks for; all that it uses if it names none. */
+static enum status choose_inputs(struct error_study *study, const struct school *school) {
+    const struct sweep_error *const error = study->study->error;
+    const struct sweep_axis *const axis = &study->study->sweep[0];
+    const bool are_all = error->sensitivity && error->n_inputs == 0;
+    for (int i = 0; i < (are_all ? SWEEP_N_INPUTS : error->n_inputs); i++) {
+        const struct sweep_error_key *const row = are_all ? &sweep_inputs[i] : error->input[i].key;
+        const double value = input_value(study, school, row->path);
+        for (int c = 0; c < study->sweep->n_swept; c++) {
+            if (strcmp(axis->key[c].row, row->path) != 0 || are_all) continue;
+            return status_fail(STATUS_CASE, "error: %s is swept: its sensitivity is that of the points", row->path);
+        }
+        if (!is_used_input(study, row, value)) {
+            if (are_all || study->is_against) continue;
+            return status_fail(
+                STATUS_CASE, "error.%s: %s %s", error->sensitivity ? "sensitivity" : "uncertain", row->path,
+                fabs(value) > 0 ? "changes nothing in this case" : "is 0 or not given: parts of it have no meaning");
+        }
+        struct error_study_key *const key = &study->key[study->n_keys++];
+        *key = (struct error_study_key){.row = row,
+                                        .unit = "",
+                                        .n_levels = 1,
+                                        .value = {value},
+                                        .member = {-1},
+                                        .uncertainty = are_all ? NAN : error->input[i].uncertainty};
+        NEW(study->sweep->arena, key->part, study->n_asked * study->n_fish);
+        NEW(study->sweep->arena, key->slope, study->n_asked * study->n_fish);
+    }
+    return STATUS_OK;
+}
+
 /* Add all varied keys of a point, without levels; no key of the sweep. */
 static enum status choose_keys(struct error_study *study, const struct school *school) {
     const struct sweep_error *const error = study->study->error;
     const struct sweep_axis *const axis = &study->study->sweep[0];
     for (int i = 0; i < SWEEP_N_ERROR_KEYS; i++) {
         const struct sweep_error_key *const row = &sweep_error_keys[i];
-        bool is_wanted = row->kind == SWEEP_MODEL ? error->models : error->n_keys == 0;
+        bool is_wanted = row->kind == SWEEP_MODEL ? error->models : error->n_keys == 0 && !error->sensitivity;
         for (int k = 0; k < error->n_keys; k++) is_wanted |= error->levels[k].key == row;
         for (int c = 0; c < study->sweep->n_swept; c++) is_wanted &= strcmp(axis->key[c].row, row->path) != 0;
         const bool is_local = strcmp(row->path, "fish.nodes") == 0 || strcmp(row->path, "time.shedding_interval") == 0;
@@ -434,6 +536,7 @@ static enum status choose_keys(struct error_study *study, const struct school *s
         NEW(study->sweep->arena, key->part, study->n_asked * study->n_fish);
     }
 
+    TRY(choose_inputs(study, school));
     if (study->n_keys > 0 || !study->is_full || study->is_against) return STATUS_OK;
     return status_fail(STATUS_CASE, "error.keys: none of these keys changes anything in this case");
 }
@@ -448,8 +551,16 @@ static void add_all_columns(struct error_study *study) {
         const bool are_nodes = strcmp(row->path, "fish.nodes") == 0;
         add_columns(sweep, row->path);
         if (row->companion) add_columns(sweep, row->companion);
-        if (are_nodes && values->school.fluid.density > 0) add_columns(sweep, "fish.sheet_points");
-        if (strcmp(row->path, "time.shedding_interval") != 0) continue;
+        // an input keeps the number of sheet points, which follows from the depth
+        const bool is_model_input = row->kind == SWEEP_INPUT;
+        if ((are_nodes || is_model_input) && values->school.fluid.density > 0) add_columns(sweep, "fish.sheet_points");
+        if (is_model_input && study->is_steady) {
+            add_columns(sweep, "steady.tolerance");
+            add_columns(sweep, "steady.output_beats");
+        }
+        const bool is_beat = is_model_input && strcmp(strrchr(row->path, '.'), ".frequency") == 0;
+        if (is_beat) add_columns(sweep, "time.shedding_interval");
+        if (strcmp(row->path, "time.shedding_interval") != 0 && !is_beat) continue;
         add_columns(sweep, "time.end");
         add_columns(sweep, "time.checkpoint_interval");
         add_columns(sweep, "time.output_interval");
@@ -520,6 +631,7 @@ static enum status choose_quantities(struct error_study *study) {
     NEW(study->sweep->arena, study->error, n);
     NEW(study->sweep->arena, study->together, n);
     NEW(study->sweep->arena, study->parts, n);
+    NEW(study->sweep->arena, study->inputs, n);
     NEW(study->sweep->arena, study->shared, n);
     NEW(study->sweep->arena, study->lowest, n);
     NEW(study->sweep->arena, study->highest, n);
@@ -725,6 +837,7 @@ static struct error_sweep *create_comparison(struct error_sweep *sweep, enum err
         NEW(arena, to->error, n);
         NEW(arena, to->together, n);
         NEW(arena, to->parts, n);
+        NEW(arena, to->inputs, n);
         NEW(arena, to->shared, n);
         NEW(arena, to->lowest, n);
         NEW(arena, to->highest, n);
@@ -750,6 +863,7 @@ static struct error_sweep *create_comparison(struct error_sweep *sweep, enum err
                 snprintf(key->objection, CONVERGENCE_BYTES, "both cases have no other level in common");
             }
             NEW(arena, key->part, n);
+            if (key->row->kind == SWEEP_INPUT) NEW(arena, key->slope, n);
         }
     }
     return compared;
@@ -806,10 +920,16 @@ enum status error_plan_create(struct arena *arena, struct error_sweep **plan, co
             const char *const path = axis->key[c].row;
             const int f = fish_of(&axis->key[c]) < 0 ? 0 : fish_of(&axis->key[c]);
             const struct sweep_error_key *const row = sweep_error_find(path);
-            const bool is_choice = row && row->n_levels > 0;
+            bool is_of_case = row && row->n_levels > 0;
             const bool is_swept = c < sweep->n_swept;
-            value[c] = f >= point->n_fish || (is_swept ? point->is_against : is_choice) ? arena_text(arena, "%s", "")
-                       : is_swept                                                       ? swept[p * sweep->n_swept + c]
+
+            // an input of the case itself, whose default others may follow
+            for (int k = 0; k < point->n_keys; k++) {
+                const struct sweep_error_key *const one = point->key[k].row;
+                is_of_case |= one->kind == SWEEP_INPUT && strcmp(one->path, path) == 0;
+            }
+            value[c] = f >= point->n_fish || (is_swept ? point->is_against : is_of_case) ? arena_text(arena, "%s", "")
+                       : is_swept                                                        ? swept[p * sweep->n_swept + c]
                                   : text_of(point, case_table_row(path), plan_number_of(point->values, path, f));
         }
         point->base = point->stated = row_append(sweep, value, point->is_against ? -1 : p - 1, point->is_against);

@@ -16,6 +16,10 @@
  *     all keys               x                    x                    x
  *     nodes and interval            x      x             x      x                 others: from 0, 3, 6
  *
+ * An input, a number of the case, has levels at both sides of the stated value, or on one side if the other is out of
+ * its range. They give the derivative of each quantity (convergence.h), for a table of sensitivities or, times the
+ * uncertainty of the number, for the error.
+ *
  * With `against` every value is also compared with that of a twin: of another case, of another point of the sweep, or
  * of another fish of the same run. The twin varies the same keys by the same factors. Ratio and difference are
  * quantities of their own, judged level by level: errors that both values share cancel. */
@@ -32,9 +36,13 @@
 #include "study/member_file.h"
 #include "study/study.h"
 
-enum { ERROR_STUDY_LEVELS = 1 + SWEEP_ERROR_LEVELS, ERROR_STUDY_QUANTITIES = 16 };
+enum {
+    ERROR_STUDY_LEVELS = 1 + SWEEP_ERROR_LEVELS,
+    ERROR_STUDY_QUANTITIES = 16,
+    ERROR_STUDY_KEYS = SWEEP_N_ERROR_KEYS + SWEEP_N_INPUTS
+};
 
-/* A numerical key, or a choice of the model, and its levels from fine to coarse. */
+/* A numerical key or a choice of the model and its levels from fine to coarse, or an input and its levels, growing. */
 struct error_study_key {
     const struct sweep_error_key *row;
     const char *unit;                 /* " beats" if the case gives a duration in beats, otherwise "" */
@@ -48,6 +56,8 @@ struct error_study_key {
     char objection[CONVERGENCE_BYTES]; /* reason to distrust any order, or ""; n_levels 1: reason for not varying */
     double cost_exponent;              /* exponent of the resolution in the wall time */
     struct convergence_result *part;   /* of each quantity; for a choice of the model: the change (n_asked, n_fish) */
+    double uncertainty;                /* of an input, as a part of it; NaN: none */
+    struct convergence_slope *slope;   /* of an input: d ln Q/d ln p; NULL: no input              (n_asked, n_fish) */
 };
 
 /* The lowest or highest value of a quantity over all choices of the model. */
@@ -78,12 +88,13 @@ struct error_study {
     int n_asked;     /* requested quantities */
     int quantity[ERROR_STUDY_QUANTITIES]; /* numbers of member_file.h */
     int n_keys;
-    struct error_study_key key[SWEEP_N_ERROR_KEYS];
+    struct error_study_key key[ERROR_STUDY_KEYS];
     int base;              /* the member of the case */
     int stated;            /* the member of the stated value */
     double *value, *error; /* stated values, and their errors; NaN: unknown   (n_asked, n_fish) */
     double *together;      /* part of the error: interaction of refined keys  (n_asked, n_fish) */
     double *parts;  /* the errors of all keys, without regard to their signs                        (n_asked, n_fish) */
+    double *inputs; /* part of the error, in quadrature: inputs with an uncertainty                 (n_asked, n_fish) */
     double *shared; /* part of the error: other keys, from the full points                         (n_asked, n_fish) */
     struct error_study_model *lowest,
         *highest;    /* values with other choices of the model            (n_asked, n_fish) */

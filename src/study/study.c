@@ -100,15 +100,16 @@ static enum status run_member(const struct study *study, const struct job *job) 
     // a steady state starts from the steady state of the preceding member, if any
     if (sweep_is_steady(study->values)) {
         const int before = sweep_member_before(study->values, job->member);
-        struct steady_options search = {.path = path,
-                                        .from = before < 0 ? NULL : study_folder_member(arena, folder, before, ".nc"),
-                                        .overwrite = 1,
-                                        .command = command,
-                                        .progress = member_report_beats,
-                                        .data = job->report,
-                                        .stop = study->options->stop};
+        struct steady_options search = {
+            .path = path,
+            .from = before < 0 ? study->options->from : study_folder_member(arena, folder, before, ".nc"),
+            .overwrite = 1,
+            .command = command,
+            .progress = member_report_beats,
+            .data = job->report,
+            .stop = study->options->stop};
         const enum status status = steady_run(values, &search);
-        if (status != STATUS_FILE || !search.from) return status;
+        if (status != STATUS_FILE || before < 0) return status;
 
         // the preceding member failed or has not run: start from the initial values of the case
         search.from = NULL;

@@ -28,6 +28,7 @@ struct study_progress {
 struct study_options {
     const char *folder;
     const char *command; /* command line, for the history attribute of the files */
+    const char *from;    /* steady state that the first search starts from; NULL: the start of the case */
     int n_processes;     /* simultaneous processes; 0: usable processors over threads per member */
     int first, last;     /* members to run; last -1: all */
     int n_required;      /* the first n_required members must succeed: a failure stops the study */

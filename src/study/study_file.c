@@ -50,12 +50,14 @@ enum {
     AT_LEVEL,
     KEY_ORDER,
     KEY_FLAG,
+    SENSITIVITY,
+    SENSITIVITY_ERROR,
     N_ROWS
 };
 
 /* Existence of the variables of a row: once, for each swept key, for each quantity of members; with `relative_to`, and
  * then for each number of members; with a refined axis, and for each quantity with orders; in an error study, in a
- * sweep of errors, and for each quantity with errors. */
+ * sweep of errors, and for each quantity with errors; if there are inputs, for each quantity. */
 enum existence {
     ALWAYS,
     BY_SWEPT_KEY,
@@ -66,7 +68,8 @@ enum existence {
     BY_ORDER,
     IN_ERRORS,
     IN_POINTS,
-    BY_ERROR
+    BY_ERROR,
+    BY_INPUT
 };
 
 static const char of_key[] = "of the key"; /* the unit of the key */
@@ -106,7 +109,7 @@ static const struct row {
     {"key_reason", "", NETCDF_TEXT, IN_ERRORS, P | K | T, "reason why the key is not varied, or empty"},
     {"key_levels", "1", NETCDF_INT, IN_ERRORS, P | K, "levels of the key"},
     {"key_stated", "1", NETCDF_INT, IN_ERRORS, P | K, "level of the stated value, from 0, the finest"},
-    {"key_is_choice", "1", NETCDF_INT, IN_ERRORS, K, "1: choice of the model, not in the sum"},
+    {"key_is_choice", "1", NETCDF_INT, IN_ERRORS, K, "1: choice of the model, not in the sum; 2: input"},
     {"key_design_order", "1", NETCDF_DOUBLE, IN_ERRORS, K, "order that the key has by design; NaN: none"},
     {"key_value", of_key, NETCDF_DOUBLE, IN_ERRORS, P | K | KL, "value of the key at each level, from fine to coarse"},
     {"key_member", "1", NETCDF_INT, IN_ERRORS, P | K | KL, "member of each level; -1: none"},
@@ -123,6 +126,9 @@ static const struct row {
     {"key_order_%s", "1", NETCDF_DOUBLE, BY_ERROR, P | K | F, "observed order of %s in each key"},
     {"key_flag_%s", "", NETCDF_TEXT, BY_ERROR, P | K | F | T,
      "reason why the levels of each key give no order of %s, or empty"},
+    {"sensitivity_%s", "1", NETCDF_DOUBLE, BY_INPUT, P | K | F,
+     "d ln Q/d ln p of Q, %s, by each input p; NaN: no input"},
+    {"sensitivity_error_%s", "1", NETCDF_DOUBLE, BY_INPUT, P | K | F, "error of d ln Q/d ln p of Q, %s"},
 };
 
 /* A variable of a file. */
@@ -144,9 +150,9 @@ struct contents {
     const struct case_values *study;
     const struct member_file *member;
     const struct convergence_orders *orders;
-    const struct error_sweep *errors;                            /* NULL: none */
-    const struct sweep_error_key *error_key[SWEEP_N_ERROR_KEYS]; /* varied at some point            (dimension key) */
-    size_t length[N_DIMENSIONS];                                 /* 0: the dimension does not exist */
+    const struct error_sweep *errors;                          /* NULL: none */
+    const struct sweep_error_key *error_key[ERROR_STUDY_KEYS]; /* varied at some point            (dimension key) */
+    size_t length[N_DIMENSIONS];                               /* 0: the dimension does not exist */
     int n_variables;
     struct variable *variable; /* (n_variables) */
 };
@@ -229,8 +235,9 @@ static void list_variables(struct contents *contents) {
             add_variable(contents, (struct variable){.row = r, .number = q, .quantity = member_file_quantity(number)});
         }
         const int n_relations = contents->errors && contents->errors->twin ? N_ERROR_RELATIONS : 1;
-        for (int q = 0; contents->errors && existence == BY_ERROR && q < n_relations * contents->errors->point->n_asked;
-             q++) {
+        const bool has_inputs = contents->errors && (study->error->sensitivity || study->error->n_inputs > 0);
+        const bool is_of_error = existence == BY_ERROR || (existence == BY_INPUT && has_inputs);
+        for (int q = 0; contents->errors && is_of_error && q < n_relations * contents->errors->point->n_asked; q++) {
             const int asked = q / n_relations, number = contents->errors->point[0].quantity[asked];
             add_variable(contents, (struct variable){.row = r,
                                                      .number = asked,
@@ -329,7 +336,8 @@ static struct value error_value(const struct contents *contents, const struct va
     const int n_levels = key ? key->n_levels : 0;
     switch (v->row) {
         case KEY_NAME: return (struct value){.text = row->path};
-        case KEY_IS_CHOICE: return (struct value){.number = row->kind == SWEEP_MODEL};
+        case KEY_IS_CHOICE:
+            return (struct value){.number = row->kind == SWEEP_MODEL ? 1 : row->kind == SWEEP_INPUT ? 2 : 0};
         case KEY_DESIGN_ORDER: return (struct value){.number = sweep_error_order(contents->study, row)};
         case KEY_REASON: return (struct value){.text = n_levels == 1 ? key->objection : ""};
         case KEY_LEVELS: return (struct value){.number = n_levels};
@@ -343,10 +351,13 @@ static struct value error_value(const struct contents *contents, const struct va
             if (i[1] >= n_levels) return (struct value){.number = NAN};
             return (struct value){
                 .number = convergence_study_value(point, contents->member, key->member[i[1]], v->number, i[2])};
+        case SENSITIVITY: return (struct value){.number = n_levels > 1 && key->slope ? key->slope[place].value : NAN};
+        case SENSITIVITY_ERROR:
+            return (struct value){.number = n_levels > 1 && key->slope ? key->slope[place].error : NAN};
         case KEY_ORDER: return (struct value){.number = n_levels > 1 ? key->part[place].order : NAN};
         default:
             *text = '\0';
-            if (n_levels > 1) study_print_reason(point, key, place, text);
+            if (n_levels > 1 && !key->slope) study_print_reason(point, key, place, text);
     }
     return (struct value){.text = text};
 }
@@ -437,13 +448,15 @@ enum status study_file_write(struct arena *arena, const char *path, const struct
     if (errors) {
         if (errors->n_swept > 0) length[BY_POINT] = (size_t)errors->n_points;
         length[BY_KEY_LEVEL] = ERROR_STUDY_LEVELS;
-        for (int i = 0; i < SWEEP_N_ERROR_KEYS; i++) {
+        for (int i = 0; i < ERROR_STUDY_KEYS; i++) {
+            const struct sweep_error_key *const row =
+                i < SWEEP_N_ERROR_KEYS ? &sweep_error_keys[i] : &sweep_inputs[i - SWEEP_N_ERROR_KEYS];
             bool is_varied = false;
             for (int p = 0; p < errors->n_points; p++) {
                 const struct error_study *const point = &errors->point[p];
-                for (int k = 0; k < point->n_keys; k++) is_varied |= point->key[k].row == &sweep_error_keys[i];
+                for (int k = 0; k < point->n_keys; k++) is_varied |= point->key[k].row == row;
             }
-            if (is_varied) contents.error_key[length[BY_KEY]++] = &sweep_error_keys[i];
+            if (is_varied) contents.error_key[length[BY_KEY]++] = row;
         }
     }
 
@@ -771,6 +784,13 @@ enum status study_errors(const struct case_values *values, const struct study_op
     ARENA(arena, NULL, owner);
     struct error_sweep *sweep;
     TRY(error_plan_create(arena, &sweep, values, options));
+    if (options->from && !sweep->point[0].is_steady) {
+        return status_fail(STATUS_CASE, "--from %s: starts a search: ask for quantities of a steady state (steady_...)",
+                           options->from);
+    }
+    if (options->from && access(options->from, R_OK) != 0) {
+        return status_fail(STATUS_FILE, "--from %s: cannot be read: %s", options->from, strerror(errno));
+    }
     if (plan > 0) {
         const int n = options->n_processes > 0 ? options->n_processes : omp_get_num_procs() / values->school.threads;
         TRY(study_print_plan(sweep, n < 1 ? 1 : n, options, stream));

@@ -645,6 +645,8 @@ static void print_value(const struct error_study *study, int q, int f, FILE *str
     if (is_ratio) fprintf(stream, " over that of %s", error_plan_twin_name(study, f));
     if (isnan(value)) {
         fprintf(stream, ": unknown\n");
+    } else if (study->study->error->sensitivity) {
+        fprintf(stream, ": %.5g%s%s\n", value, blank, unit);
     } else if (isnan(error)) {
         fprintf(stream, ": %.5g%s%s, error unknown\n", value, blank, unit);
     } else {
@@ -754,6 +756,9 @@ static void print_shares(const struct error_study *study, const struct error_stu
         if (key->row->kind == SWEEP_MODEL) continue;
         char levels[LEVEL_BYTES];
         write_levels(study, key, levels);
+        if (key->slope) {
+            snprintf(levels, LEVEL_BYTES, "%.4g +- %.3g %%", key->value[key->stated], 100 * key->uncertainty);
+        }
         table_cell(table, "%s", key->row->path);
         table_cell(table, "%s", levels);
         for (int q = 0; q < study->n_asked; q++) {
@@ -765,7 +770,9 @@ static void print_shares(const struct error_study *study, const struct error_stu
                 continue;
             }
             part_cell(table, part->error, study->error[place]);
-            if (part->verdict == CONVERGENCE_ACCEPTED) {
+            if (key->slope) {
+                table_cell(table, "%s", isnan(part->error) ? "unknown" : "input");
+            } else if (part->verdict == CONVERGENCE_ACCEPTED) {
                 table_cell(table, "%.1f", part->order);
             } else {
                 table_cell(table, "%s",
@@ -774,27 +781,103 @@ static void print_shares(const struct error_study *study, const struct error_stu
                                                                   : "flagged");
             }
             table_number(table, "%.2f", 100 * part->error / fabs(study->value[place]));
+            if (key->slope) {
+                table_cell(table, "%s", "");
+                continue;
+            }
             table_number(table, "%.0f", study->parts[place] > 0 ? 100 * part->error / study->parts[place] : 0);
         }
-        table_cell(table, key->n_levels > 1 ? "%d levels" : "", key->n_levels < 4 ? key->n_levels : 4);
+        table_cell(table, key->n_levels > 1 && !key->slope ? "%d levels" : "", key->n_levels < 4 ? key->n_levels : 4);
         table_cell(table, "%s", k == next->key ? next_words(study, next) : "");
         table_row(table);
     }
 
     // what the errors of opposite signs take away from each other
-    bool cancel = false;
-    double *cancelled;
+    bool cancel = false, has_inputs = false;
+    double *cancelled, *numerical;
     NEW(study->sweep->arena, cancelled, study->n_asked * study->n_fish);
+    NEW(study->sweep->arena, numerical, study->n_asked * study->n_fish);
     for (int place = 0; place < study->n_asked * study->n_fish; place++) {
-        const double sum = study->parts[place] + study->together[place] + study->shared[place];
-        cancelled[place] = study->error[place] - sum;
+        const double sum = study->parts[place] + study->together[place] + study->shared[place],
+                     all = study->error[place], inputs = study->inputs[place];
+        numerical[place] = sqrt(fmax(0, all * all - inputs * inputs));
+        cancelled[place] = numerical[place] - sum;
         cancel |= cancelled[place] < -1e-3 * sum;
+        has_inputs |= inputs > 0;
     }
 
     if (n_moved > 1) sum_row(table, study, "together", study->together, f);
     if (cancel) sum_row(table, study, "opposite signs", cancelled, f);
-    sum_row(table, study, "sum", study->error, f);
+    if (has_inputs) sum_row(table, study, "numerical", numerical, f);
+    if (has_inputs) sum_row(table, study, "inputs", study->inputs, f);
+    sum_row(table, study, has_inputs ? "sum, in quadrature" : "sum", study->error, f);
     table_print(table, stream);
+}
+
+/* The steps of an input: "+-4, 8 %" or, on one side, "-4, 8, 16 %". */
+static char *steps_text(const struct error_study *study, const struct error_study_key *key) {
+    struct text text = {.arena = study->sweep->arena};
+    const bool is_below = key->stated == key->n_levels - 1, is_above = key->stated == 0;
+    const int sign = is_below ? -1 : 1;
+    for (int i = 1; key->stated + sign * i >= 0 && key->stated + sign * i < key->n_levels; i++) {
+        const double step = key->value[key->stated + sign * i] / key->value[key->stated] - 1;
+        text_add(&text, "%s%.3g", i > 1 ? ", " : is_below ? "-" : is_above ? "+" : "+-", 100 * fabs(step));
+    }
+    text_add(&text, " %%");
+    return text.text;
+}
+
+/* Print the derivatives by all inputs for each fish, those of the first quantity falling in size. */
+static void print_sensitivities(const struct error_study *study, FILE *stream) {
+    const int n_shown = study->n_fish < MAX_FISH_SHOWN ? study->n_fish : MAX_FISH_SHOWN;
+    for (int f = 0; f < n_shown; f++) {
+        const bool is_compared = study->relation != ERROR_VALUE;
+        if (is_compared && error_plan_twin_fish(study, f) < 0) continue;
+        for (int q = 0; q < study->n_asked; q++) {
+            if (f == 0 || quantity_of(study, q)->of_fish) print_value(study, q, f, stream);
+        }
+
+        // an insertion sort; an unknown derivative comes last
+        int order[ERROR_STUDY_KEYS], n = 0;
+        for (int k = 0; k < study->n_keys; k++) {
+            if (!study->key[k].slope || study->key[k].n_levels == 1) continue;
+            const int place = error_plan_place(study, 0, quantity_of(study, 0)->of_fish ? f : 0);
+            const double size = fabs(study->key[k].slope[place].value);
+            int i = n++;
+            for (; i > 0 && !(fabs(study->key[order[i - 1]].slope[place].value) >= size) && !isnan(size); i--)
+                order[i] = order[i - 1];
+            order[i] = k;
+        }
+
+        struct table *const table = table_create(study->sweep->arena, 1);
+        table_column(table, "d ln Q/d ln p", NULL);
+        table_column(table, "p", NULL);
+        table_column(table, "steps", NULL);
+        for (int q = 0; q < study->n_asked; q++) {
+            table_column(table, short_name_of(study, q), NULL);
+            table_column(table, "error", NULL);
+        }
+        for (int i = 0; i < n; i++) {
+            const struct error_study_key *const key = &study->key[order[i]];
+            const char *const unit = case_table_row(key->row->path)->unit;
+            table_cell(table, "%s", key->row->path);
+            table_cell(table, "%.4g%s%s", key->value[key->stated], *unit ? " " : "", unit);
+            table_cell(table, "%s", steps_text(study, key));
+            for (int q = 0; q < study->n_asked; q++) {
+                const struct convergence_slope slope =
+                    key->slope[error_plan_place(study, q, quantity_of(study, q)->of_fish ? f : 0)];
+                const int own = decimals_for(slope.error), decimals = own > 6 ? 6 : own;
+                table_cell(table, isnan(slope.value) ? "unknown" : "%+.*f", decimals, slope.value);
+                table_cell(table, isnan(slope.error) ? "" : "%.*f", decimals, slope.error);
+            }
+            table_row(table);
+        }
+        table_print(table, stream);
+        fprintf(stream, "\n");
+    }
+    if (n_shown < study->n_fish) {
+        fprintf(stream, "The first %d of %d fish; error.csv and study.nc have all.\n", n_shown, study->n_fish);
+    }
 }
 
 /* Print the largest change of a requested quantity by each choice of the model. */
@@ -991,6 +1074,12 @@ enum status study_print_errors(struct error_study *study, const struct member_fi
         print_points(study->sweep->change, members, stream);
         return STATUS_OK;
     }
+    if (study->study->error->sensitivity) {
+        if (study->sweep->twin) print_sensitivities(&study->sweep->ratio->point[0], stream);
+        print_sensitivities(study, stream);
+        print_reasons(study, members, stream);
+        return STATUS_OK;
+    }
     if (study->sweep->twin) print_comparison(study->sweep, members, stream);
 
     const struct error_study_next next = convergence_study_next(study, members);
@@ -1028,18 +1117,19 @@ struct csv_row {
     const struct error_study *study;
     int q, f;
 };
-static const char of_model[] = "a choice of the model, not in the sum";
+static const char of_model[] = "a choice of the model, not in the sum", of_input[] = "an input, in quadrature";
 
-static void write_csv_row(const struct csv_row *row, const char *key, const char *levels, double value, double order,
-                          double error, const char *verdict) {
+static void write_csv_row(const struct csv_row *row, const char *kind, const char *key, const char *levels,
+                          double value, double order, double error, const char *verdict) {
     const struct error_study *const study = row->study;
     const struct sweep_axis *const axis = &row->sweep->study.sweep[0];
     const struct member_file_quantity *const quantity = quantity_of(study, row->q);
     const char *const word = error_relation_words[study->relation];
     text_print_csv(row->file, quantity->of_fish ? study->values->school.fish[row->f].name : "");
-    fprintf(row->file, ",%s%s%s,%s,%.9g,%s,%s,%.3g,%.3g,%.3g,", word, *word ? "_" : "", quantity->name,
-            study->relation == ERROR_RATIO ? "1" : quantity->unit, value, key, levels, order, error,
-            100 * error / fabs(study->value[error_plan_place(study, row->q, row->f)]));
+    const double whole = *kind ? value : study->value[error_plan_place(study, row->q, row->f)];
+    fprintf(row->file, ",%s%s%s%s,%s,%.9g,%s,%s,%.3g,%.3g,%.3g,", kind, word, *word ? "_" : "", quantity->name,
+            study->relation == ERROR_RATIO || *kind ? "1" : quantity->unit, value, key, levels, order, error,
+            100 * error / fabs(whole));
     text_print_csv(row->file, verdict);
     for (int c = 0; c < row->sweep->n_swept; c++) {
         const char *const swept = axis->value[study->base * axis->n_keys + c];
@@ -1062,7 +1152,7 @@ static void write_csv_rows(const struct error_sweep *sweep, FILE *file) {
             const bool of_fish = quantity_of(study, q)->of_fish, is_compared = study->relation != ERROR_VALUE;
             if ((f > 0 && !of_fish) || (is_compared && of_fish && error_plan_twin_fish(study, f) < 0)) continue;
             const struct csv_row row = {file, sweep, study, q, f};
-            write_csv_row(&row, "sum", "", study->value[place], NAN, study->error[place], "");
+            write_csv_row(&row, "", "sum", "", study->value[place], NAN, study->error[place], "");
 
             char levels[LEVEL_BYTES], reason[CONVERGENCE_BYTES];
             for (int k = 0; k < study->n_keys; k++) {
@@ -1070,14 +1160,22 @@ static void write_csv_rows(const struct error_sweep *sweep, FILE *file) {
                 write_levels(study, key, levels);
                 if (is_missing(key)) {
                     snprintf(reason, CONVERGENCE_BYTES, "not varied: %.200s", key->objection);
-                    write_csv_row(&row, key->row->path, levels, study->value[place], NAN, NAN, reason);
+                    write_csv_row(&row, "", key->row->path, levels, study->value[place], NAN, NAN, reason);
                 }
                 if (key->n_levels == 1) continue;
+                if (key->slope) {
+                    const struct convergence_slope slope = key->slope[place];
+                    write_csv_row(&row, "sensitivity_", key->row->path, levels, slope.value, NAN, slope.error, "");
+                    if (isnan(key->uncertainty)) continue;
+                    write_csv_row(&row, "", key->row->path, levels, study->value[place], NAN, key->part[place].error,
+                                  of_input);
+                    continue;
+                }
                 study_print_reason(study, key, place, reason);
                 const char *const verdict = key->row->kind == SWEEP_MODEL ? of_model
                                             : *reason                     ? reason
                                                                           : convergence_words(key->part[place].verdict);
-                write_csv_row(&row, key->row->path, levels, study->value[place], key->part[place].order,
+                write_csv_row(&row, "", key->row->path, levels, study->value[place], key->part[place].order,
                               key->part[place].error, verdict);
             }
 
@@ -1088,7 +1186,7 @@ static void write_csv_rows(const struct error_sweep *sweep, FILE *file) {
                 *levels = '\0';
                 if (key)
                     snprintf(levels, LEVEL_BYTES, "%s %s", key->row->path, level_text(study, key, models[m]->level));
-                write_csv_row(&row, m == 0 ? "lowest" : "highest", levels, models[m]->value, NAN,
+                write_csv_row(&row, "", m == 0 ? "lowest" : "highest", levels, models[m]->value, NAN,
                               fabs(models[m]->value - study->value[place]), of_model);
             }
         }

@@ -736,6 +736,19 @@ class Programs(unittest.TestCase):
         self.assertRegex(str(lift), r"^steady_lift of foil: 0\.\d+ ± 0\.0+[1-9]\d N \(flagged\); other models: 0\.\d+ to 0\.\d+$")
         self.assertTrue(lift.models[0] < lift.value - lift.error, lift)  # less lift with a finite span
         self.assertTrue(lift.flags and "noise" not in " ".join(lift.flags), lift.flags)
+        matter, = shoal.error(ROOT / "cases/foil_static.yaml", "steady_lift", path="matter",
+                              sensitivity=["body.modulus", "fluid.density"])
+        (stiff, of_stiff), (dense, of_dense) = (matter.sensitivity[key] for key in ("fish.body.modulus", "fluid.density"))
+        self.assertLess(abs(stiff + dense - 1), of_stiff + of_dense)  # the shape depends on their ratio
+        self.assertTrue(np.isnan(matter.error) and "fluid.density +0.75" in str(matter), matter)
+        unsure, = shoal.error(ROOT / "cases/foil_static.yaml", "steady_lift", path="matter", uncertain={"body.modulus": 0.1},
+                              overwrite=True)
+        self.assertLess(abs(unsure.error / (0.1 * stiff * unsure.value) - 1), 0.01)  # error.csv has three digits
+        for wrong in {"sensitivity": []}, {"sensitivity": "smoothing"}, {"uncertain": {"body.modulus": -1}}:
+            with self.assertRaises(shoal.CaseError):
+                shoal.error(ROOT / "cases/foil_static.yaml", "steady_lift", path="wrong", **wrong)
+        with self.assertRaisesRegex(shoal.FileError, "start none.nc: cannot be read"):
+            shoal.error(ROOT / "cases/foil_static.yaml", "steady_lift", path="wrong", start="none.nc")
         with self.assertRaisesRegex(shoal.CaseError, "nothing_known"):
             shoal.error(ROOT / "cases/foil_static.yaml", "nothing_known", path="budget", overwrite=True)
 

@@ -1,5 +1,6 @@
 /* test_convergence.c: errors of a value by levels of refinement. The sequences are steady speeds [m s-1] and costs of
  * transport [m s-2] of the default fish, measured with several forms of the tail. */
+#include <math.h>
 #include <string.h>
 
 #include "near.h"
@@ -34,6 +35,34 @@ static struct convergence_result judge_with(const struct key *key, const double 
 
 static struct convergence_result judge(const struct key *key, const double *values, double noise) {
     return judge_with(key, values, noise, NULL);
+}
+
+/* A cubic through (0, 2), with the derivative 3 there: d ln f/d ln p is 1.5. */
+static double cubic(double x) {
+    return 2 + 3 * x - 4 * x * x + 5 * x * x * x;
+}
+
+TEST(a_derivative_is_exact_for_a_cubic_and_its_error_is_the_third_order) {
+    const double both[] = {-0.08, -0.04, 0, 0.04, 0.08}, below[] = {-0.16, -0.08, -0.04, 0};
+    double value[5];
+    for (int i = 0; i < 5; i++) value[i] = cubic(both[i]);
+    struct convergence_slope slope = convergence_find_slope(5, both, value, 2, 0);
+    NEAR(slope.value, 1.5, 0, 1e-12);
+    NEAR(slope.error, 5 * 0.04 * 0.04 / 2, 0, 1e-12);  // the central difference of the smaller step
+    for (int i = 0; i < 4; i++) value[i] = cubic(below[i]);
+    slope = convergence_find_slope(4, below, value, 3, 0);
+    NEAR(slope.value, 1.5, 0, 1e-12);
+    NEAR(slope.error, 5 * 0.04 * 0.08 / 2, 0, 1e-12);  // the parabola through 0, h and 2 h
+}
+
+TEST(a_derivative_has_the_noise_of_its_values_over_the_step) {
+    const double step[] = {-0.08, -0.04, 0, 0.04, 0.08}, line[] = {0.92, 0.96, 1, 1.04, 1.08};
+    const struct convergence_slope slope = convergence_find_slope(5, step, line, 2, 1e-5);
+    // the weights are 1/(12 h) and 8/(12 h)
+    NEAR(slope.error, 1e-5 / (12 * 0.04) * sqrt(2 * (8 * 8 * (1 + 0.04 * 0.04) + 1 + 0.08 * 0.08)), 1e-9, 0);
+    assert_true(isnan(convergence_find_slope(2, step, line, 1, 0).value));
+    const double missing[] = {0.92, 0.96, 1, NAN, 1.08};
+    assert_true(isnan(convergence_find_slope(5, step, missing, 2, 0).value));
 }
 
 static void verdict_is(enum convergence_verdict got, enum convergence_verdict want) {

@@ -156,8 +156,9 @@ names = {getattr(netCDF4.Dataset(f"compared/member-{m:04}.nc"), "title"): m for 
 own, other = (float(study["speed"][names[name], 0]) for name in ("stiff", "soft"))
 assert abs(ratio - own / other) < 1e-12 * ratio, (ratio, own, other)
 rows = [row for row in csv.DictReader(open("compared/error.csv")) if row["key"] == "sum"]
-stated, level = int(study["key_stated"][0]), study["level_ratio_speed"][0, :, 0]
-assert level[stated] == ratio and np.isfinite(level).sum() == study["key_levels"][0], level
+# all levels of the nodes have the finest sheet, those of the other keys the value of the case among them
+level, n = study["level_ratio_speed"][..., 0], study["key_levels"][:]
+assert all(np.isfinite(level[k]).sum() == n[k] and (k == 0 or ratio in level[k]) for k in np.flatnonzero(n > 1)), level
 assert [row["quantity"] for row in rows] == ["speed", "ratio_speed", "change_speed"], rows
 assert abs(float(rows[1]["error"]) / float(study["bar_ratio_speed"][0]) - 1) < 1e-2
 end
@@ -186,6 +187,74 @@ run study swimmer.yaml -o failing --set steady.beats=4
 check members_that_fail_are_reported_once eval 'grep -qE "^[0-9]+ members \(0-[-0-9, ]+\): failed: no steady state in 4 beats" out &&
     test "$(grep -c "no steady state in 4 beats" out)" = 1'
 check then_the_error_is_unknown eval 'test "$code" != 0 && grep -qE "^sum +unknown" out'
+
+# ---- sensitivities: dimensional analysis knows sums of them
+
+# the shape in a stream without viscosity depends on modulus over density times the square of the speed; the lift is also
+# proportional to the density and, with the length, to its square
+run error foil.yaml --of steady_lift --sensitivity=modulus,fluid.density,length -o lift
+check sensitivities_end_with_0 test "$code" = 0
+check a_number_has_its_steps_and_its_error grep -qE '^fish.body.modulus +8.149e\+04 Pa +\+-4, 8 % +\+0\.[0-9]+ +0\.0*[0-9]+ *$' out
+check no_numerical_key_is_varied eval '! grep -q "fish.nodes" out'
+check the_value_has_no_error_bar grep -qE '^steady_lift of foil: [0-9.]+ N$' out
+cat >sums.py <<'end'
+"""sums.py FOLDER QUANTITY SUM KEY=FACTOR...: a sum of sensitivities is as dimensional analysis has it, within its errors."""
+import csv, sys
+folder, quantity, want, *terms = sys.argv[1:]
+rows = {row["key"]: row for row in csv.DictReader(open(f"{folder}/error.csv")) if row["quantity"] == f"sensitivity_{quantity}"}
+terms = [(rows[key], float(factor)) for key, factor in (term.split("=") for term in terms)]
+got = sum(factor * float(row["value"]) for row, factor in terms)
+error = sum(abs(factor) * float(row["error"]) for row, factor in terms)
+assert abs(got - float(want)) <= error < 0.05, (got, want, error)
+end
+check density_and_modulus_make_1 /usr/bin/python3 sums.py lift steady_lift 1 fish.body.modulus=1 fluid.density=1
+check length_makes_2 /usr/bin/python3 sums.py lift steady_lift 2 fish.length=1
+# the reactive swimmer has no viscosity: times scale with the beat, also the interval that it is tied to
+run error swimmer.yaml --of steady_speed --of steady_cost_of_transport --sensitivity=wave.frequency,modulus,length,suction \
+    -o swims --set error=none
+check what_has_no_effect_is_refused has err 'error.sensitivity: fish.pressure.suction changes nothing in this case'
+run error swimmer.yaml --of steady_speed --of steady_cost_of_transport --sensitivity=wave.frequency,modulus,length -o swims \
+    --set error=none -j 2
+check times_make_the_speed /usr/bin/python3 sums.py swims steady_speed 1 fish.wave.frequency=1 fish.body.modulus=2
+check times_make_the_cost /usr/bin/python3 sums.py swims steady_cost_of_transport 2 fish.wave.frequency=1 fish.body.modulus=2
+check lengths_make_the_speed /usr/bin/python3 sums.py swims steady_speed 1 fish.length=1 fish.body.modulus=2
+sed -n '/^steady_speed/,$p' out >table
+run gather swims
+check gather_has_the_sensitivities cmp out table
+run info swims/study.nc
+check info_has_them_too cmp <(sed -n "/^steady_speed/,\$p" out) <(grep -v "^member .* warning: " table)
+# a number at its bound, of a fish that does not beat with it
+run error foil.yaml --of steady_lift --sensitivity=suction -o bound
+check a_bound_has_steps_on_one_side grep -qE '^fish.pressure.suction +1 +-4, 8, 16 % ' out
+# uncertain numbers of the case: linear, in quadrature with each other and the rest
+run error foil.yaml --of steady_lift -o uncertain --uncertain modulus=10% --uncertain fluid.density=0.05 --set 'error={of: steady_lift, keys: [nodes]}'
+check an_uncertain_number_is_in_the_table grep -qE '^fish.body.modulus +8.149e\+04 \+- 10 % +[0-9.]+ +input +' out
+check errors_add_in_quadrature /usr/bin/python3 - <<'end'
+import csv
+rows = list(csv.DictReader(open("uncertain/error.csv")))
+of = {(row["quantity"], row["key"]): row for row in rows}
+number = lambda key, column: float(of["steady_lift", key][column])
+parts = [number(key, "error") for key in ("fish.nodes", "fish.body.modulus", "fluid.density")]
+assert abs(number("sum", "error") / sum(part**2 for part in parts) ** 0.5 - 1) < 1e-2, parts
+slope = float(of["sensitivity_steady_lift", "fish.body.modulus"]["value"])
+assert abs(parts[1] / (0.1 * slope * number("sum", "value")) - 1) < 1e-2, (parts, slope)
+end
+refused no_state_to_start_from 4 '--from none.nc: cannot be read' error swimmer.yaml --of steady_speed --from none.nc -o none
+refused a_run_has_no_search 2 '--from table: starts a search' error swimmer.yaml --of speed --from table -o none
+run error swimmer.yaml --of steady_speed --sensitivity=modulus --from swims/member-0000.nc --set error=none -o again
+check a_start_changes_no_more_than_the_errors /usr/bin/python3 - <<'end'
+import csv
+one, two = ([row for row in csv.DictReader(open(f"{name}/error.csv")) if row["key"] == "fish.body.modulus" and
+             row["quantity"] == "sensitivity_steady_speed"][0] for name in ("swims", "again"))
+assert abs(float(one["value"]) - float(two["value"])) <= float(one["error"]) + float(two["error"]), (one, two)
+end
+refused no_such_number 2 "error.sensitivity: 'nodes' is no such number; these are: length, " error foil.yaml --of steady_lift --sensitivity=nodes
+refused one_fish_of_all 2 'fish[*] varies that of all fish in proportion' error foil.yaml --of steady_lift '--sensitivity=fish[0].length'
+refused several_keys_end_so 2 "'smoothing' is the end of several keys: wake.smoothing and sheet.smoothing" error foil.yaml --of steady_lift --sensitivity=smoothing
+refused part_of_nothing 2 'fish.wave.amplitude is 0 or not given' error foil.yaml --of steady_lift --sensitivity=amplitude
+refused one_or_the_other 2 'sensitivity gives no error bar: remove one' error foil.yaml --of steady_lift --sensitivity --uncertain modulus=5%
+refused no_part 2 '--uncertain modulus=-5%: expects KEY=PART' error foil.yaml --of steady_lift --uncertain modulus=-5%
+refused twice 2 "the key 'modulus' is here twice" error foil.yaml --of steady_lift --uncertain modulus=5% --uncertain modulus=4%
 
 # ---- wrong input
 
@@ -347,6 +416,8 @@ if /usr/bin/python3 -c 'import netCDF4, matplotlib' 2>err; then
     check a_picture_of_errors_along_a_sweep test -s along.png
     /usr/bin/python3 "$scripts/plot.py" study compared/study.nc compared.png >>drawn 2>&1
     check a_picture_of_a_comparison test -s compared.png
+    /usr/bin/python3 "$scripts/plot.py" study swims/study.nc swims.png >>drawn 2>&1
+    check a_picture_of_sensitivities test -s swims.png
 else
     skip pictures 'python3-netcdf4 or python3-matplotlib is missing'
 fi
