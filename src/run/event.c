@@ -139,6 +139,27 @@ static bool event_control(struct state *state, struct residual *residual) {
     return jumps;
 }
 
+// What is recorded at an event, and changes neither the water nor the fish. Before: the rates of algebraic unknowns at
+// the end of the interval, and the impulse that the wakes lose by decay in it.
+static void event_observe_before(struct residual *residual, struct state *state) {
+    const struct school *const school = residual->school;
+    const int threads = fish_threads(school);
+    state_find_rates(state, school, residual_shed_is_algebraic(residual));
+
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int f = 0; f < school->n_fish; f++) impulse_fade(school, state, f);
+}
+
+// After the water has its new velocities: the momentum balance, the samples of the histories, which the control reads,
+// self-crossings and divergence.
+static void event_observe_after(struct residual *residual, struct state *state) {
+    const struct school *const school = residual->school;
+    diagnostics_momentum_event(residual, state);
+    diagnostics_remember(residual, state);
+    self_crossing_remember(school, state, residual->scratch);
+    warnings_divergence(school, state, state->divergence, &state->diverged);
+}
+
 // The rest of an event, after the velocities of the free vortices are known. jumps: the unknowns have jumped. *jumped:
 // they have, or a control law has made them jump.
 static enum status event_finish(struct state *state, struct residual *residual, struct initial_conditions *initial,
@@ -150,10 +171,7 @@ static enum status event_finish(struct state *state, struct residual *residual, 
     for (int f = 0; f < school->n_fish; f++) uses_flow |= control_uses_moment(&school->fish[f]);
     if (uses_flow) TRY(event_flow(state, residual));
 
-    diagnostics_momentum_event(residual, state);
-    diagnostics_remember(residual, state);
-    self_crossing_remember(school, state, residual->scratch);
-    warnings_divergence(school, state, state->divergence, &state->diverged);
+    event_observe_after(residual, state);
 
     const bool steered = event_control(state, residual);
     if (steered) {
@@ -207,11 +225,10 @@ enum status event_next(struct state *state, struct residual *residual, struct in
                        int *jumped) {
     const struct school *school = residual->school;
     const int threads = fish_threads(school);
-    state_find_rates(state, school, residual_shed_is_algebraic(residual));
+    event_observe_before(residual, state);
 
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < school->n_fish; f++) {
-        impulse_fade(school, state, f);
         wake_advance(&state->wake[f], school->interval);
         control_advance(&state->control[f], school->interval);
     }

@@ -9,6 +9,7 @@
 #include "body/bending_mode.h"
 #include "body/rod.h"
 #include "flow/flow_at_bodies.h"
+#include "force/force_model.h"
 
 /* One fish, and everything that warnings about it read. */
 struct subject {
@@ -198,7 +199,7 @@ static double model_warning(enum warning warning, const struct subject *subject,
                      "the published force on %s does not follow from an energy and can create energy: accuracy "
                      "warnings are suppressed; compare with 'force: reactive'",
                      who);
-            return subject->school->density > 0 && fish->force == FORCE_PUBLISHED ? always : 0;
+            return subject->school->density > 0 && force_model_of(fish)->is_for_comparison ? always : 0;
 
         case WARNING_PITCH:
             snprintf(line, WARNING_BYTES,
@@ -394,7 +395,7 @@ static bool school_warning(enum warning warning, struct residual *residual, cons
         case WARNING_WAKE:
             flow_find_decayed(residual->flow, state, lost);
             for (int f = 0; f < school->n_fish; f++) {
-                if (school->fish[f].force == FORCE_PUBLISHED) lost[f] = 0;
+                if (force_model_of(&school->fish[f])->is_for_comparison) lost[f] = 0;
                 n += lost[f] > most_decayed;
                 if (lost[f] > lost[worst_fish]) worst_fish = f;
             }
@@ -448,7 +449,7 @@ int warnings_line(enum warning warning, struct residual *residual, const struct 
     double most = 1;
     int n = 0, worst = 0;
     for (subject.f = 0; subject.f < school->n_fish; subject.f++) {
-        if (school->fish[subject.f].force == FORCE_PUBLISHED && warning != WARNING_FORCE) continue;
+        if (force_model_of(&school->fish[subject.f])->is_for_comparison && warning != WARNING_FORCE) continue;
         const double size = of_fish[warning](warning, &subject, "", line);
         if (!(size > 1)) continue;
 
