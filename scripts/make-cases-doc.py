@@ -200,6 +200,15 @@ SECTIONS = {
     "fish.control": "Heading control",
 }
 
+# What follows the table of the words of a key.
+AFTER = {
+    "solver.method": """
+Everyday work needs `ida`, and `trapezoid` for the undamped vibration of a body over many periods. The other methods are
+there for comparisons: `euler`, `heun`, `rk4`, `dormand_prince` and `implicit_euler` show orders of convergence, and how
+the cost of explicit steps grows with the stiffness of the body (cases/studies/methods.yaml,
+cases/studies/stiffness.yaml; doc/numerics.md, section 4).""",
+}
+
 # Keys that neither a case nor a study in cases/ sets: who sets them, and when. tests/extra/key_users.py compares.
 UNSET = [
     ("time.checkpoint_interval, time.checkpoint_wall", "who runs for hours on a cluster, where a job can end before the run"),
@@ -291,6 +300,8 @@ def table(section, keys):
             yield f"\n| `{key['path']}` | meaning |\n|---|---|"
             for word, meaning in key["words"].items():
                 yield f"| `{word}` | {cell(meaning)} |"
+            if key["path"] in AFTER:
+                yield AFTER[key["path"]]
 
 
 def main():
