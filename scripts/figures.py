@@ -127,6 +127,10 @@ CHAPTERS = [
         ("budget", "The errors of a case: the value with its error and with `--models` the range of other models, the part of each "
          "key, and the levels of each key.",
          ["shoal error cases/foil_static.yaml --of steady_lift --models -q -o budget", "plot.py study budget/study.nc budget.png"]),
+        ("matter", "Sensitivities: the change of a result in per cent for one per cent of each number of the case.",
+         ["shoal error cases/foil_static.yaml --of steady_lift --sensitivity -q -o matter", "plot.py study matter/study.nc matter.png"]),
+        ("best_gait", "The history of `shoal.optimize`: the gait and the stiffness of least cost at a given speed ([python.md](python.md)).",
+         ["doc/examples/best_gait.py --figure best_gait.png"]),
         ("methods", "Integration methods as an axis of a comparison: error over cost.",
          ["shoal study cases/studies/methods.yaml -q -o methods", "plot.py study methods/study.nc methods.png"]),
     ]),
@@ -163,7 +167,6 @@ FIGURES = {
                      "-- follower_map.png"],
     "validation": ["scripts/validation.py validation.png"],
     "real_time": ["scripts/measure/performance.py --picture real_time.png"],
-    "best_gait": ["doc/examples/best_gait.py --figure best_gait.png"],
     "keep_together": ["doc/examples/keep_together.py --figure keep_together.png"],
     "hold_place": ["doc/examples/hold_place.py --figure hold_place.png"],
 }

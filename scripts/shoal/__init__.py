@@ -11,6 +11,7 @@ What the commands of the program do:
     run(case)       simulate, write a result      resume(result)     continue a run that was stopped or killed
     steady(case)    steady state, stability       study(case)        all members of a sweep; gather(folder)
     error(case, of) numbers with error bars       compare(case)      integration methods by error and cost
+    optimize(case, quantity, over)                numbers of a case that make a quantity least or largest
     check(case)     errors and cost of a case     keys(word)         keys of cases, variables of results
     view(result)    a page for a browser          animate(result)    a movie
     field(result)   the fluid on a grid           export(result, folder)  files of VTK
@@ -41,13 +42,14 @@ from ._program import (
     CaseWarning, Check, Estimate, Page, Steady, animate, check, compare, error, export, field, gather, keys, resume, steady,
     study, view,
 )
+from ._optimize import Optimum, optimize
 from ._results import grid, open, periods  # noqa: A004 - shoal.open, as gzip.open
 from ._run import Run, Variable, load, run, variables
 
 # Not __all__: help(shoal) would then print all classes with what they inherit, thousands of lines.
-_PUBLIC = ["run", "resume", "steady", "study", "gather", "error", "compare", "check", "keys", "view", "animate", "field",
+_PUBLIC = ["run", "resume", "steady", "study", "gather", "error", "optimize", "compare", "check", "keys", "view", "animate", "field",
            "export", "open", "grid", "periods", "load", "variables", "version", "Run", "Variable", "Check", "Steady",
-           "Estimate", "Page", "SwimEnv", "SwimVectorEnv", "SchoolEnv", "Error", "CaseError", "FileError", "SolverError",
+           "Estimate", "Optimum", "Page", "SwimEnv", "SwimVectorEnv", "SchoolEnv", "Error", "CaseError", "FileError", "SolverError",
            "CaseWarning", "__version__"]
 
 

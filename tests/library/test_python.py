@@ -2,6 +2,7 @@
 """test_python.py: the module shoal. Run by test_python.sh in a folder of its own; ends with the line of a shell test."""
 
 import copy
+import csv
 import functools
 import gc
 import importlib.util
@@ -1245,6 +1246,77 @@ def example(name):
     return module
 
 
+# a fish with cheap beats, whose interval is given
+SWIMMER = {"time": {"end": 1, "shedding_interval": 0.04},
+           "fish": [{"name": "fish", "force": "reactive", "nodes": 9, "body": {"modulus": 1e7}}]}
+
+
+@unittest.skipUnless(importlib.util.find_spec("scipy"), "python3-scipy is missing")
+class Optima(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            cls.best = shoal.optimize(SWIMMER, "cost_of_transport", ["wave.frequency", "wave.amplitude"],
+                                      bounds={"wave.frequency": (0.5, 2)}, subject_to={"speed": 0.8}, path="best", processes=1)
+
+    def test_the_optimum_has_the_wanted_speed_and_a_lower_cost(self):
+        best = self.best
+        self.assertTrue(best.success, best)
+        self.assertLess(abs(best.reached["steady_speed"] / 0.8 - 1), 1e-3)
+        self.assertLess(best.value, 0.9 * best.start)
+        self.assertEqual(list(best.values), ["fish.wave.frequency", "fish.wave.amplitude"])
+        self.assertEqual(best.history[0]["fish.wave.frequency"], 1)
+        self.assertRegex(repr(best), r"^<shoal.Optimum: steady_cost_of_transport 0\.\d+, 0\.\d+ of the start, steady_speed 0\.8")
+
+    def test_the_optimum_is_a_case_of_its_own(self):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            state = shoal.steady(SWIMMER, self.best.assignments, path="own.nc", overwrite=True)
+        self.assertLess(abs(state.cost_of_transport[0] / self.best.value - 1), 1e-3)
+        self.assertTrue(os.path.exists(self.best.path))
+
+    def test_along_the_wanted_speed_the_cost_has_no_slope(self):
+        """The multiplier of Lagrange: both derivatives of the cost are the same multiple of those of the speed."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            cost, speed = shoal.error(SWIMMER, ["steady_cost_of_transport", "steady_speed"], assignments=self.best.assignments,
+                                      sensitivity=["wave.frequency", "wave.amplitude"], path="slopes", overwrite=True)
+        ratios = [cost.sensitivity[key][0] / speed.sensitivity[key][0] for key in cost.sensitivity]
+        self.assertLess(abs(ratios[0] / ratios[1] - 1), 0.05, ratios)
+
+    def test_the_history_is_kept_and_drawn(self):
+        with open("best/history.csv", encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), len(self.best.history))
+        self.assertEqual(float(rows[-1]["steady_speed"]), self.best.history[-1]["steady_speed"])
+        if importlib.util.find_spec("matplotlib"):
+            self.assertEqual(len(self.best.plot()), 4)
+
+    def test_wrong_arguments_are_refused_before_a_search(self):
+        for words, wrong in (("at least one number", {"over": []}), ("SLSQP or trust-constr", {"method": "BFGS"}),
+                             ("is the quantity itself", {"subject_to": {"steady_cost_of_transport": 0.1}})):
+            with self.assertRaisesRegex(shoal.CaseError, words):
+                shoal.optimize(SWIMMER, "cost_of_transport", **{"over": ["wave.amplitude"], "path": "never", **wrong})
+        with self.assertRaisesRegex(TypeError, "subject_to is a dict"):
+            shoal.optimize(SWIMMER, "cost_of_transport", ["wave.amplitude"], subject_to=[1], path="never")
+        self.assertFalse(os.path.exists("never"))
+        with self.assertRaisesRegex(shoal.FileError, "best: exists"):
+            shoal.optimize(SWIMMER, "cost_of_transport", ["wave.amplitude"], path="best")
+
+    def test_wrong_numbers_are_refused_with_a_remedy(self):
+        def ask(words, *arguments, **more):
+            with self.assertRaisesRegex(shoal.CaseError, words):
+                shoal.optimize(SWIMMER, "cost_of_transport", *arguments, path="wrong", overwrite=True, **more)
+
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            ask("'nodes' is no such number", ["nodes"])
+            ask("is 0 or not given", ["wave.constant"])
+            ask("not within its bounds, 0.5 and 0.6", ["wave.amplitude"], {"wave.amplitude": (0.5, 0.6)})
+            ask("which is not in over: wave.amplitude", ["wave.amplitude"], {"amplitude": (0.1, 0.6)})
+
+
 class Examples(unittest.TestCase):
     @FORKS_BESIDE_THREADS  # of the pool before, which end after it has closed
     def test_a_fish_begins_to_learn(self):
@@ -1264,12 +1336,10 @@ class Examples(unittest.TestCase):
         self.assertGreater(abs(away[0][-1]), 1)
         self.assertLess(abs(away[1][-1]), 0.1)
 
-    def test_differences_of_the_cost_of_a_gait_are_smooth(self):
+    def test_the_best_gait_is_found_and_compared(self):
         best_gait = example("best_gait")
-        best_gait.BEATS = 3
-        wide, narrow = best_gait.slopes(1e-5, [1e-3, 1e-6])
-        self.assertGreater(abs(wide), 0.01)
-        self.assertLess(abs(narrow - wide), 1e-3 * abs(wide))
+        best_gait.main({**SWIMMER, "name": "gait"}, 0.8, None, {"wave.amplitude": (0.15, 0.6)}, models=False)
+        self.assertTrue(os.path.exists("best_gait-error/error.csv") and os.path.exists("best_gait/history.csv"))
 
 
 class Document(unittest.TestCase):
