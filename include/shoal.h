@@ -90,9 +90,9 @@ double shoal_end(const struct shoal *run);
 double shoal_interval(const struct shoal *run);
 
 /* Set the value of a key of one fish at the last event: "wave.amplitude", "wave.frequency" (Hz; the phase of the beat
- * is continuous), "control.bias", "motion.heave" (m), "control.desired_heading" (degree), one number each, or
- * "control.waypoints" (pairs, m). The change is smooth within control.ramp; the integrator does not restart. Means over
- * a period keep the period of the case. */
+ * is continuous), "control.bias", "motion.heave" (m), "control.desired_heading" (degree), one number each,
+ * "control.offset" (x, y, m) or "control.waypoints" (pairs, m). The change is smooth within control.ramp; the
+ * integrator does not restart. Means over a period keep the period of the case. */
 int shoal_set(struct shoal *run, int fish, const char *key, int n, const double *values);
 
 /* Copy positions, m, and velocities, m s-1, of the nodes of a fish, nose to tail: (n_nodes, 2). Either may be NULL. */

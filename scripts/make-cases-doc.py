@@ -92,6 +92,18 @@ every fish.
 shoal run pair.yaml --set time.end=20 --set 'fish[*].nodes=13' --set 'fish[upper].start.position=[0, -1]'
 ```
 
+## A place beside another fish
+
+What does it cost to swim there? With `control.law: place` a fish keeps its `offset` from the leader `of` by its amplitude and
+its course ([model.md](model.md), section 11), and `shoal steady cases/place.yaml` prints the cost of both:
+
+```yaml
+steady: {formation: true}
+fish:
+  - {name: leader, control: {law: course}}
+  - {name: follower, start: {position: [1.4, 0.3]}, control: {law: place, of: leader, offset: [1.4, 0.3]}}
+```
+
 ## sweep
 
 A sweep is a list of axes, each with the path of a key, as for `--set`, and the values of the key; `shoal study` runs
@@ -197,7 +209,7 @@ SECTIONS = {
     "fish.start": "Initial position and velocity",
     "fish.load": "External load",
     "fish.motion": "Prescribed motion",
-    "fish.control": "Heading control",
+    "fish.control": "Control of heading and place",
 }
 
 # What follows the table of the words of a key.

@@ -147,6 +147,10 @@ void school_stir(struct setup *setup) {
         state->control[f].phi0_rate = school_random(setup);
         state->control[f].moment = 0.1 + 0.05 * f;
         state->control[f].moment_rate = -0.7;
+        if (fish->control.leader >= 0) {
+            state->control[f].drive = 0.3;
+            state->control[f].drive_rate = 0.8;
+        }
         // half way to what has been set from outside
         const double ramp = fish->control.ramp, t = setup->t - ramp / 2;
         if (fish->amplitude > 0) control_set(fish, &state->control[f], CONTROL_SET_AMPLITUDE, t, 0.8 * fish->amplitude);

@@ -3,7 +3,8 @@
 from ._plot_style import BLUE, GRID, LINES, RED, add_legend
 from ._files import FileError, np
 
-SLOW = ("speed", "slip", "turn", "heading", "ahead", "aside")  # the slow quantities of a fish, in the order of the file
+# the slow quantities of a fish, in the order of the file
+SLOW = ("speed", "slip", "turn", "heading", "ahead", "aside", "amplitude", "course")
 
 
 def draw_multipliers(axes, multipliers, errors):
@@ -37,7 +38,7 @@ def draw(results, figure):
     slow = [q for q in range(len(SLOW)) if np.isfinite(mode[:, q]).any()]
     width = 0.8 / len(slow)
     for i, q in enumerate(slow):
-        right.bar(np.arange(results.n_fish) + (i - (len(slow) - 1) / 2) * width, mode[:, q], width, color=LINES[i], label=SLOW[q])
+        right.bar(np.arange(results.n_fish) + (i - (len(slow) - 1) / 2) * width, mode[:, q], width, color=LINES[i % len(LINES)], label=SLOW[q])
     right.set_xticks(range(results.n_fish), results.names)
     turn = abs(np.angle(multipliers[0]))
     period = f", period {2 * np.pi / turn:.1f} beats" if turn > 0 else ""

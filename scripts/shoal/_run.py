@@ -22,7 +22,8 @@ Case = "str | os.PathLike | Mapping"
 Assignments = "Mapping[str, object] | Iterable[str] | None"
 
 # keys of Run.set
-KEYS = ("wave.amplitude", "wave.frequency", "control.bias", "motion.heave", "control.desired_heading", "control.waypoints")
+KEYS = ("wave.amplitude", "wave.frequency", "control.bias", "motion.heave", "control.desired_heading", "control.offset",
+        "control.waypoints")
 
 # ---- cases
 
@@ -329,8 +330,8 @@ class Run:
 
     def set(self, fish: int | str, key: str, value: float | Sequence):
         """Set, at the last event, a key of a fish, given by number or name: wave.amplitude, wave.frequency (Hz),
-        control.bias, motion.heave (m), control.desired_heading (degree), each one number, or control.waypoints, pairs (n, 2) in m. The
-        change is made within control.ramp."""
+        control.bias, motion.heave (m), control.desired_heading (degree), each one number, control.offset, (x, y) in m, or
+        control.waypoints, pairs (n, 2) in m. The change is made within control.ramp."""
         number = index_of(fish, self.names, "set")
         if not isinstance(key, str):
             raise TypeError(f"set: a key is one of {', '.join(KEYS)}, not {kind(key)}")

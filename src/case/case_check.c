@@ -361,7 +361,9 @@ static void check_body(const struct check *check) {
     for (int i = 0; i < wave->table.n * wave->table.width; i++) curvature = fmax(curvature, fabs(wave->table.value[i]));
     const double bias = (int)fish->control.law > CONTROL_NONE ? fish->control.limit : fabs(fish->control.bias);
     const double of_wave = envelope * fabs(wave->amplitude) * (fish->reference_nodes - 1) / (fish->nodes - 1);
-    const double turn = wave->table.n > 0 ? curvature / (fish->nodes - 1) + of_wave * bias : of_wave * (1 + bias);
+    const double most = fish->control.law == CONTROL_PLACE ? 1 + fish->control.amplitude_limit : 1;
+    const double turn =
+        most * (wave->table.n > 0 ? curvature / (fish->nodes - 1) + of_wave * bias : of_wave * (1 + bias));
     complain_if(turn >= M_PI, check, wave->table.n > 0 ? "fish.wave.table" : "fish.wave.amplitude",
                 "the wave turns a joint by up to %.3g rad; the maximum is 3.14", turn);
 }
@@ -550,14 +552,55 @@ static void check_pressure(const struct check *check) {
 // ---- control
 
 /* The control laws that use a key. */
+#define LAWS_HEADING (1U << CONTROL_HEADING | 1U << CONTROL_AVERAGED_HEADING)
+#define LAWS_COURSE (1U << CONTROL_COURSE | 1U << CONTROL_PLACE)
 static const struct {
     const char *path;
     unsigned laws; /* bits 1 << enum control_law */
-} law_keys[] = {{"fish.control.limit", 1U << CONTROL_HEADING | 1U << CONTROL_AVERAGED_HEADING | 1U << CONTROL_COURSE},
-                {"fish.control.feedforward", 1U << CONTROL_HEADING | 1U << CONTROL_AVERAGED_HEADING},
-                {"fish.control.damping", 1U << CONTROL_COURSE},
-                {"fish.control.slow", 1U << CONTROL_COURSE},
-                {"fish.control.rate", 1U << CONTROL_AVERAGED_HEADING | 1U << CONTROL_COURSE}};
+} law_keys[] = {{"fish.control.limit", LAWS_HEADING | LAWS_COURSE},
+                {"fish.control.feedforward", LAWS_HEADING},
+                {"fish.control.damping", LAWS_COURSE},
+                {"fish.control.slow", LAWS_COURSE},
+                {"fish.control.rate", 1U << CONTROL_AVERAGED_HEADING | LAWS_COURSE},
+                {"fish.control.amplitude_gain", 1U << CONTROL_PLACE},
+                {"fish.control.amplitude_damping", 1U << CONTROL_PLACE},
+                {"fish.control.amplitude_limit", 1U << CONTROL_PLACE},
+                {"fish.control.lookahead", 1U << CONTROL_PLACE},
+                {"fish.control.hold_time", 1U << CONTROL_PLACE}};
+
+// the fish whose place the law of fish f counts from; -1: none of this name
+static int find_leader(const struct school_parameters *school, int f) {
+    for (int g = 0; g < school->n_fish; g++) {
+        if (school->fish[g].name && strcmp(school->fish[g].name, school->fish[f].control.of) == 0) return g;
+    }
+    return -1;
+}
+
+// the leader of law place: another fish that does not follow this one
+static void check_law_place(const struct check *check) {
+    const struct school_parameters *const school = &check->values->school;
+    const struct control_parameters *const control = &check->fish->control;
+    const int f = check->index, leader = control->of ? find_leader(school, f) : -1;
+    static const char path[] = "fish.control.of";
+    complain_if(control->waypoints.n > 0, check, "fish.control.waypoints",
+                "has no effect with 'law: place': remove the waypoints, or choose course");
+    complain_if(check->fish->motion.prescribed != PRESCRIBED_NONE, check, "fish.control.law",
+                "place needs a fish that swims: set motion.prescribed to none");
+    complain_if(!check_is_written(check, path), check, "fish.control.law",
+                "place needs the name of another fish in control.of");
+    if (!control->of) return;
+    complain_if(control->of[0] != '\0' && leader < 0, check, path, "no fish has the name '%.60s'", control->of);
+    complain_if(leader == f, check, path, "a fish cannot hold a place beside itself: name another fish");
+
+    // follow the leaders to a fish that leads only; a longer way than the school is a cycle
+    int last = leader, n = 0;
+    while (last >= 0 && last != f && n++ < school->n_fish) {
+        const struct control_parameters *const next = &school->fish[last].control;
+        last = next->law == CONTROL_PLACE && next->of ? find_leader(school, last) : -1;
+    }
+    complain_if(leader >= 0 && leader != f && last == f, check, path,
+                "'%.60s' holds a place beside this fish in turn: let one of them lead", control->of);
+}
 
 static void check_control(const struct check *check) {
     const struct fish_parameters *const fish = check->fish;
@@ -584,6 +627,12 @@ static void check_control(const struct check *check) {
                     law_keys[i].path, "has no effect with 'law: %s': remove the key", law);
     }
 
+    const bool holds_place = control->law == CONTROL_PLACE;
+    static const char only_place[] = "has an effect only with 'law: place': remove the key";
+    complain_if(!holds_place && check_is_written(check, "fish.control.of"), check, "fish.control.of", only_place);
+    complain_if(!holds_place && fabs(control->offset[0]) + fabs(control->offset[1]) > 0, check, "fish.control.offset",
+                only_place);
+
     const double free_gain = 2;  // the derived default with law none
     complain_if(is_free && fabs(control->gain - free_gain) > 0, check, "fish.control.gain",
                 "has no effect with 'law: none': remove the key");
@@ -592,7 +641,7 @@ static void check_control(const struct check *check) {
     const bool has_filter = control->filter > 0 && fabs(control->filter - period) > 1e-9 * period;
     complain_if(!has_moment(control) && has_filter, check, "fish.control.filter",
                 "has no effect without feedforward: remove the key");
-    complain_if(control->law != CONTROL_COURSE && fabs(control->course_filter - period / 4) > 1e-9 * period, check,
+    complain_if(!(LAWS_COURSE >> control->law & 1U) && fabs(control->course_filter - period / 4) > 1e-9 * period, check,
                 "fish.control.course_filter", "has no effect with 'law: %s': remove the key", law);
     complain_if(!has_points && is_given(check, "fish.control.acceptance_radius"), check,
                 "fish.control.acceptance_radius", "has no effect without control.waypoints: remove the key");
@@ -601,9 +650,12 @@ static void check_control(const struct check *check) {
                 "has no effect with 'law: none': choose a law, or remove the key");
     complain_if(heading->n > 0 && !is_start && !is_free && has_points, check, path,
                 "has no effect with control.waypoints: remove the heading or the waypoints");
+    complain_if(heading->n > 0 && !is_start && holds_place, check, path,
+                "has no effect with 'law: place', which points where the leader does: remove the key");
     if (is_free) return;
 
     // the requirements of a law
+    if (holds_place) check_law_place(check);
     complain_if(fabs(control->bias) > 0, check, "fish.control.bias",
                 "has an effect only with 'law: none': the law computes the steering bias");
     complain_if(fish->wave.frequency == 0 && (has_moment(control) || control->law != CONTROL_HEADING), check,

@@ -272,7 +272,7 @@ void case_value_write(struct text *text, const struct key *key, const void *fiel
         case INTEGER: text_add(text, "%d", *(const int *)field); break;
         case CHOICE:
         case METHOD: text_add(text, "%s", case_table_word(key, *(const int *)field)); break;
-        case STRING: yaml_write_scalar(text, *(char *const *)field); break;
+        case STRING: yaml_write_scalar(text, *(char *const *)field ? *(char *const *)field : ""); break;
         case PAIR: write_row(text, 2, field); break;
         case NUMBERS: write_row(text, list->n, list->value); break;
         case PROFILE:

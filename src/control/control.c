@@ -160,6 +160,7 @@ static double table_heading(const struct control_law_data *control, double t, do
 
 double control_desired_heading(const struct fish *fish, const struct control_memory *memory, double t,
                                const double *y) {
+    if (fish->control.law == CONTROL_PLACE) return memory->held_heading;
     if (control_n_waypoints(fish, memory) == 0) {
         double rate;
         return memory->has_heading ? lead_value(&memory->heading, t) : table_heading(&fish->control, t, &rate);
@@ -197,7 +198,8 @@ void control_residual(const struct fish *fish, const struct control_memory *memo
         case CONTROL_NONE: value = fish->control.bias + lead_value(&memory->bias, t); break;
         case CONTROL_HEADING: value = fish->control.limit * tanh(heading_argument(fish, memory, t, since, y)); break;
         case CONTROL_AVERAGED_HEADING:
-        case CONTROL_COURSE: value = memory->phi0 + since * memory->phi0_rate; break;
+        case CONTROL_COURSE:
+        case CONTROL_PLACE: value = memory->phi0 + since * memory->phi0_rate; break;
     }
 
     residual[fish->at.phi0] = y[fish->at.phi0] - value;
@@ -337,6 +339,39 @@ void control_jacobian(const struct fish *fish, const struct control_memory *memo
 void control_advance(struct control_memory *memory, double interval) {
     memory->phi0 += interval * memory->phi0_rate;
     memory->moment += interval * memory->moment_rate;
+    memory->drive += interval * memory->drive_rate;
+}
+
+/* Law place at an event: the rate of the amplitude for the distance along the heading of the leader, and the desired
+ * course for the distance across. doc/model.md, section 11. */
+static void place_event(const struct fish *fish, struct control_memory *memory, const struct control_view *view) {
+    const struct control_law_data *const control = &fish->control;
+    const double heading = view->leader_heading, turn = heading - control->frame;
+    const double ahead[2] = {cos(heading), sin(heading)}, left[2] = {-ahead[1], ahead[0]};
+
+    // the vector to the place, in body lengths: ahead and to the left. The offset turns with the leader
+    double offset[2], error[2] = {0, 0}, change = 0;
+    for (int d = 0; d < 2; d++) offset[d] = control->offset[d] + lead_value(&memory->offset[d], view->t);
+    const double to_place[2] = {view->away[0] + cos(turn) * offset[0] - sin(turn) * offset[1],
+                                view->away[1] + sin(turn) * offset[0] + cos(turn) * offset[1]};
+    for (int d = 0; d < 2; d++) {
+        error[0] += to_place[d] * ahead[d] / fish->length;
+        error[1] += to_place[d] * left[d] / fish->length;
+        change += view->away_change[d] * ahead[d] / fish->length;
+    }
+
+    // the amplitude; an integral stands still where its law is at the limit
+    const double share = view->interval / fish->period / control->hold_time, most = control->amplitude_limit;
+    const double wish = control->gains[0] * error[0] + control->gains[1] * change + memory->hold[0];
+    const double drive = most * tanh(wish / most), slope = 1 - (drive / most) * (drive / most);
+    memory->hold[0] += share * slope * control->gains[0] * error[0];
+    memory->drive_rate = (drive - memory->drive) / view->interval;
+    memory->drive_rate = fmax(-control->rate, fmin(control->rate, memory->drive_rate));
+
+    // the course towards a point ahead of the place by the lookahead
+    const double slant = error[1] / control->lookahead + memory->hold[1];
+    memory->hold[1] += share / (1 + slant * slant) * error[1] / control->lookahead;
+    memory->held_heading = heading + atan(slant);
 }
 
 bool control_event(const struct fish *fish, struct control_memory *memory, const struct control_view *view,
@@ -364,6 +399,8 @@ bool control_event(const struct fish *fish, struct control_memory *memory, const
         const double feedforward = control->feedforward * (memory->moment + view->interval * memory->moment_rate);
         target = control_law(fish, memory, view->t, view->mean_heading, feedforward, y);
     } else if (view->has_course) {
+        if (control->law == CONTROL_PLACE) place_event(fish, memory, view);
+
         // r: weight of the course, 0 without displacement
         const double square = view->speed * view->speed;
         const double weight = square > 0 ? square / (square + control->slow * control->slow) : 0;
@@ -383,10 +420,12 @@ bool control_event(const struct fish *fish, struct control_memory *memory, const
 
 // ---- values set from outside
 
-struct fish_gait control_gait(const struct fish *fish, const struct control_memory *memory, double t) {
+struct fish_gait control_gait(const struct fish *fish, const struct control_memory *memory, double t, double since) {
     struct fish_gait gait = fish_own_gait(fish, t);
-    const double scale = 1 + lead_value(&memory->amplitude, t);
-    gait.amplitude_rate = gait.amplitude_rate * scale + gait.amplitude * lead_rate(&memory->amplitude, t);
+    const double set = 1 + lead_value(&memory->amplitude, t), driven = 1 + memory->drive + since * memory->drive_rate;
+    const double scale = set * driven,
+                 scale_rate = lead_rate(&memory->amplitude, t) * driven + set * memory->drive_rate;
+    gait.amplitude_rate = gait.amplitude_rate * scale + gait.amplitude * scale_rate;
     gait.amplitude *= scale;
     gait.angle += 2 * M_PI * lead_integral(&memory->frequency, t);
     gait.omega += 2 * M_PI * lead_value(&memory->frequency, t);
@@ -408,6 +447,12 @@ void control_set(const struct fish *fish, struct control_memory *memory, enum co
         case CONTROL_SET_FREQUENCY: lead_change(&memory->frequency, t, ramp, value - fish->omega / (2 * M_PI)); return;
         case CONTROL_SET_BIAS: lead_change(&memory->bias, t, ramp, value - fish->control.bias); return;
         case CONTROL_SET_HEAVE: lead_change(&memory->heave, t, ramp, value - fish->motion.heave); return;
+        case CONTROL_SET_OFFSET_X:
+            lead_change(&memory->offset[0], t, ramp, value - fish->control.nose_offset[0]);
+            return;
+        case CONTROL_SET_OFFSET_Y:
+            lead_change(&memory->offset[1], t, ramp, value - fish->control.nose_offset[1]);
+            return;
         case CONTROL_SET_HEADING: break;
     }
 
@@ -432,6 +477,15 @@ void control_set_waypoints(const struct fish *fish, struct control_memory *memor
 
     memory->set_out[0] = y[fish->at.x];
     memory->set_out[1] = y[fish->at.y];
+}
+
+double control_offset(const struct fish *fish, const struct control_memory *memory, int d) {
+    return fish->control.nose_offset[d] + memory->offset[d].target;
+}
+
+double control_largest_amplitude(const struct fish *fish, const struct control_memory *memory) {
+    const double more = fish->control.law == CONTROL_PLACE ? fish->control.amplitude_limit : 0;
+    return (1 + memory->amplitude.target) * (1 + more);
 }
 
 double control_largest_bias(const struct fish *fish, const struct control_memory *memory) {

@@ -1,5 +1,5 @@
-/* control.h: how a fish steers: a control law sets the bias phi0 of its wave of curvature. doc/model.md, section 11.
- * Tested by tests/control/test_control.c. */
+/* control.h: how a fish steers: a control law sets the bias phi0 of its wave of curvature, and law place its amplitude
+ * too. doc/model.md, section 11. Tested by tests/control/test_control.c. */
 #ifndef CONTROL_H
 #define CONTROL_H
 
@@ -44,15 +44,18 @@ enum { CONTROL_MAX_WAYPOINTS = 32 };
 struct control_memory {
     int waypoint; /* the next waypoint; the number of waypoints after the last waypoint */
     int has_heading, has_waypoints, n_waypoints; /* values set from outside, below */
-    double held_heading;                         /* desired heading after the last waypoint, rad */
+    double held_heading;                         /* desired heading after the last waypoint, or of law place, rad */
     double phi0, phi0_rate;     /* event-based laws: value at the last event and rate until the next event, s-1 */
     double course_rate;         /* e of law course, rad s-1 */
     double moment, moment_rate; /* tau_f and rate, dimensionless and s-1 */
+    double drive, drive_rate;   /* law place: relative change of the amplitude, and rate until the next event, s-1 */
+    double hold[2];             /* law place: the integrals, h_a of the amplitude (1) and h_b of the course (1) */
 
     /* values set from outside; initially 0 */
     struct lead amplitude, frequency, bias;      /* offsets from the case: relative to the amplitude; Hz; 1 */
     struct lead heave;                           /* offset from motion.heave, m */
     struct lead heading;                         /* if has_heading, replaces the table of the case, rad */
+    struct lead offset[2];                       /* change of the offset of law place, m */
     double waypoints[2 * CONTROL_MAX_WAYPOINTS]; /* if has_waypoints, replaces the waypoints of the case: (x, y), m */
     double set_out[2];                           /* position of the nose at that time, m */
 };
@@ -65,6 +68,11 @@ struct control_view {
     int has_course;             /* whether a full period has passed */
     double course, course_rate; /* direction of motion over this period, rad, and rate, rad s-1 */
     double speed;               /* mean over this period, m s-1; 0: course and course_rate are 0 */
+
+    /* law place: course and speed are those through the water; of the vector from the centre of mass to that of the
+     * leader, the mean over this period and the change within the period; mean heading of the leader over the period */
+    double away[2], away_change[2]; /* m */
+    double leader_heading;          /* rad */
 };
 
 /* Whether the law uses the moment of the flow. */
@@ -80,8 +88,9 @@ double control_desired_heading(const struct fish *fish, const struct control_mem
 double control_law(const struct fish *fish, const struct control_memory *memory, double t, double direction,
                    double more, const double *y);
 
-/* The gait at time t: the gait of the case with the values set from outside. */
-struct fish_gait control_gait(const struct fish *fish, const struct control_memory *memory, double t);
+/* The gait at time t, since seconds after the last event: the gait of the case with the values set from outside and the
+ * amplitude of law place. */
+struct fish_gait control_gait(const struct fish *fish, const struct control_memory *memory, double t, double since);
 
 /* Amplitude of the heave of the prescribed motion at time t, m, with the value set from outside, and its first and
  * second derivative. */
@@ -89,13 +98,15 @@ void control_heave(const struct fish *fish, const struct control_memory *memory,
 
 /* Set a value from outside, at the event at time t; the value changes within fish->control.ramp with three continuous
  * derivatives. Amplitude: in the unit of the case, the amplitude of the case is not 0; frequency: Hz; bias: of law
- * none; heave: m; desired heading: rad, by the shorter turn, without waypoints only. */
+ * none; heave: m; desired heading: rad, by the shorter turn, without waypoints only; offset of law place: m. */
 enum control_set {
     CONTROL_SET_AMPLITUDE,
     CONTROL_SET_FREQUENCY,
     CONTROL_SET_BIAS,
     CONTROL_SET_HEAVE,
-    CONTROL_SET_HEADING
+    CONTROL_SET_HEADING,
+    CONTROL_SET_OFFSET_X,
+    CONTROL_SET_OFFSET_Y
 };
 void control_set(const struct fish *fish, struct control_memory *memory, enum control_set which, double t,
                  double value);
@@ -104,7 +115,11 @@ void control_set(const struct fish *fish, struct control_memory *memory, enum co
 void control_set_waypoints(const struct fish *fish, struct control_memory *memory, int n, const double *waypoints,
                            const double *y);
 
-/* The largest absolute value of the bias after the end of a change. */
+/* The offset of the nose from that of the leader after the end of a change, component d, m; law place. */
+double control_offset(const struct fish *fish, const struct control_memory *memory, int d);
+
+/* The largest relative amplitude after the end of a change, and the largest absolute value of the bias. */
+double control_largest_amplitude(const struct fish *fish, const struct control_memory *memory);
 double control_largest_bias(const struct fish *fish, const struct control_memory *memory);
 
 /* The number of waypoints of the case, or of the waypoints set from outside. */
@@ -123,23 +138,15 @@ double control_rate(const struct fish *fish, const struct control_memory *memory
 void control_rate_jacobian(const struct fish *fish, const struct control_memory *memory, double t, double since,
                            const double *y, int first_row, int n_rows, const double *factor, struct sparse *jacobian);
 
-/* Whether control_rate depends on the motion between events. */
-bool control_rate_varies(const struct fish *fish);
-
 /* Whether control_rate depends on positions and velocities: law heading. */
 bool control_rate_varies(const struct fish *fish);
-
-/* For a rate that varies: add to each row first_row + i the derivatives of control_rate by positions and velocities
- * times factor[i] (n_rows). */
-void control_rate_jacobian(const struct fish *fish, const struct control_memory *memory, double t, double since,
-                           const double *y, int first_row, int n_rows, const double *factor, struct sparse *jacobian);
 
 /* Add the derivatives of control_residual. */
 void control_jacobian(const struct fish *fish, const struct control_memory *memory, double t, double since,
                       const double *y, struct sparse *jacobian);
 
-/* Advance phi0 and the filtered moment to an event, interval seconds after the last event. Call before any solve at the
- * event. */
+/* Advance phi0, the filtered moment and the amplitude to an event, interval seconds after the last event. Call before
+ * any solve at the event. */
 void control_advance(struct control_memory *memory, double interval);
 
 /* At an event, after control_advance: pass the waypoints within the acceptance radius, update the filtered moment, and

@@ -56,7 +56,7 @@ struct motion {
     double pivot;              /* m from the nose */
 };
 
-/* Heading control: doc/model.md, section 11. Angles in rad. */
+/* Control of heading and place: doc/model.md, section 11. Angles in rad. */
 struct control_law_data {
     enum control_law law;
     double bias, gain, damping, limit, feedforward;
@@ -72,6 +72,16 @@ struct control_law_data {
     double filter_share;             /* weight of the newest moment in the moving mean: 1 - exp(-Dt/T_f) */
     double slow;                     /* u_0 of law course, m s-1 */
     double course_share;             /* weight of the newest rate in the filtered rate: 1 - exp(-Dt/T_c) */
+
+    /* law place */
+    int leader;             /* index of the fish whose place counts; -1 for the other laws */
+    double nose_offset[2];  /* of the nose from that of the leader, at the leader's first heading, m */
+    double offset[2];       /* the same of the centres of mass of straight bodies, m */
+    double frame;           /* the leader's heading at the start */
+    double gains[2];        /* of the amplitude: by the distance, 1, and by its change in a period, 1 */
+    double amplitude_limit; /* largest relative change of the amplitude */
+    double lookahead;       /* body lengths */
+    double hold_time;       /* periods */
 };
 
 struct fish {

@@ -146,6 +146,18 @@ static void control_set(struct arena *arena, struct fish *fish, const struct fis
         to->heading[i] = angle_radians(control->desired_heading.value[2 * i + 1]);
     }
 
+    // law place; the centre of mass of a straight body lies behind the nose
+    to->leader = -1;
+    for (int g = 0; g < parameters->n_fish && control->law == CONTROL_PLACE; g++) {
+        if (strcmp(parameters->fish[g].name, control->of) == 0) to->leader = g;
+    }
+    to->gains[0] = control->amplitude_gain;
+    to->gains[1] = control->amplitude_damping;
+    to->amplitude_limit = control->amplitude_limit;
+    to->lookahead = control->lookahead;
+    to->hold_time = control->hold_time;
+    memcpy(to->nose_offset, control->offset, sizeof to->nose_offset);
+
     to->n_waypoints = control->waypoints.n;
     NEW(arena, to->waypoint_x, to->n_waypoints);
     NEW(arena, to->waypoint_y, to->n_waypoints);
@@ -213,6 +225,20 @@ static void fish_fill(const struct school *school, int f, const struct school_pa
     fish->contact_strength = fish->total_mass * fish->length * rate * rate;
 }
 
+// the offsets of law place between centres of mass of straight bodies that point where the leader does
+static void places_set(struct school *school) {
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        struct control_law_data *const control = &school->fish[f].control;
+        if (control->leader < 0) continue;
+        const struct fish *const leader = &school->fish[control->leader];
+        const double behind = fish_mass_mean(fish, fish->arc) - fish_mass_mean(leader, leader->arc);
+        control->frame = leader->start_heading;
+        control->offset[0] = control->nose_offset[0] - behind * cos(control->frame);
+        control->offset[1] = control->nose_offset[1] - behind * sin(control->frame);
+    }
+}
+
 // ---- overlaps at the start
 
 // the box around a fish at the start
@@ -227,21 +253,12 @@ static int by_place(const void *a, const void *b) {
     return (one > other) - (one < other);
 }
 
-// fail if a fish is not between the walls, or with the overlapping fish f and g < f with the least f
-static enum status refuse_overlap(const struct school *school, struct arena *scratch) {
+// the overlapping fish f and g < f with the least f, or f = n_fish; group: fish of other groups do not count, or NULL
+static void find_overlap(const struct school *school, struct arena *scratch, const double *y, const int *group,
+                         int *found_f, int *found_g) {
     const int n = school->n_fish;
-    double *y;
     struct place *place;
-    NEW(scratch, y, school->n_unknowns);
     NEW(scratch, place, n);
-    for (int f = 0; f < n; f++) {
-        fish_start(&school->fish[f], y);
-        if (fish_wall_distance(school, &school->fish[f], y, NULL) > 0) continue;
-        return status_fail(STATUS_CASE,
-                           "error: fish[%d] (%s) touches a wall or is outside the fluid at the start: change "
-                           "start.position or fluid.walls",
-                           f, school->fish[f].name);
-    }
 
     // sort the boxes along the longer side of the school
     struct box all = box_around(0, NULL, NULL);
@@ -263,6 +280,7 @@ static enum status refuse_overlap(const struct school *school, struct arena *scr
         for (int j = i + 1; j < n && place[j].from <= place[i].box.high[axis]; j++) {
             const int first = place[i].fish < place[j].fish ? place[i].fish : place[j].fish;
             const int last = place[i].fish + place[j].fish - first;
+            if (group && group[last] != group[first]) continue;
             if (last > f || (last == f && first > g) || box_gap(&place[i].box, &place[j].box) > 0) continue;
             if (fish_distance(&school->fish[last], &school->fish[first], y, 0) > 0) continue;
             f = last;
@@ -270,11 +288,70 @@ static enum status refuse_overlap(const struct school *school, struct arena *scr
         }
     }
 
+    *found_f = f;
+    *found_g = g;
+}
+
+// fail if a fish is not between the walls, or if fish overlap
+static enum status refuse_overlap(const struct school *school, struct arena *scratch) {
+    const int n = school->n_fish;
+    double *y;
+    NEW(scratch, y, school->n_unknowns);
+    for (int f = 0; f < n; f++) {
+        fish_start(&school->fish[f], y);
+        if (fish_wall_distance(school, &school->fish[f], y, NULL) > 0) continue;
+        return status_fail(STATUS_CASE,
+                           "error: fish[%d] (%s) touches a wall or is outside the fluid at the start: change "
+                           "start.position or fluid.walls",
+                           f, school->fish[f].name);
+    }
+
+    int f, g;
+    find_overlap(school, scratch, y, NULL, &f, &g);
     if (f == n) return STATUS_OK;
     return status_fail(STATUS_CASE,
                        "error: fish[%d] (%s) and fish[%d] (%s) overlap at the start: change start.position of one of "
                        "them",
                        g, school->fish[g].name, f, school->fish[f].name);
+}
+
+enum status fish_school_places(const struct school *school, const double *offset) {
+    const int n = school->n_fish;
+    bool has_places = false;
+    for (int f = 0; f < n; f++) has_places |= school->fish[f].control.leader >= 0;
+    if (!has_places) return STATUS_OK;
+
+    // straight bodies at their places, as seen from the fish that leads each group
+    ARENA(scratch, NULL, "the places of a school");
+    double *y;
+    int *group;
+    NEW(scratch, y, school->n_unknowns);
+    NEW(scratch, group, n);
+    for (int f = 0; f < n; f++) {
+        struct fish fish = school->fish[f];
+        int last = f;
+        double way[2] = {0, 0};
+        while (school->fish[last].control.leader >= 0) {
+            const struct control_law_data *const control = &school->fish[last].control;
+            for (int d = 0; d < 2; d++) way[d] += offset ? offset[2 * last + d] : control->nose_offset[d];
+            last = control->leader;
+        }
+        group[f] = last;
+        for (int d = 0; d < 2; d++) fish.start_position[d] = school->fish[last].start_position[d] + way[d];
+        if (last != f) fish.start_heading = school->fish[last].start_heading;
+        fish_start(&fish, y);
+    }
+
+    int f, g;
+    find_overlap(school, scratch, y, group, &f, &g);
+    if (f == n) return STATUS_OK;
+    if (school->fish[f].control.leader < 0) {
+        const int swap = f;
+        f = g;
+        g = swap;
+    }
+    return status_fail(STATUS_CASE, "fish[%d] (%s) would hold its place on top of fish[%d] (%s): change control.offset",
+                       f, school->fish[f].name, g, school->fish[g].name);
 }
 
 enum status fish_school_create(struct arena *parent, struct school **school,
@@ -289,6 +366,7 @@ enum status fish_school_create(struct arena *parent, struct school **school,
     fluid_set(created, parameters);
     wake_set(created, parameters);
     for (int f = 0; f < created->n_fish; f++) fish_fill(created, f, parameters);
+    places_set(created);
 
     // the slices of the unknowns, fish after fish
     for (int f = 0; f < created->n_fish; f++) {
@@ -316,6 +394,9 @@ enum status fish_school_create(struct arena *parent, struct school **school,
     struct arena *const scratch = arena_create(arena, "the start of a school");
     enum status status = refuse_overlap(created, scratch);
     arena_free(scratch);
+    if (status == STATUS_OK && fish_school_places(created, NULL) != STATUS_OK) {
+        status = status_fail(STATUS_CASE, "error: %s", status_message());
+    }
 
     // the sheets take most of the time: last, and until a stop
     for (int f = 0; f < created->n_fish && status == STATUS_OK; f++) {

@@ -20,6 +20,10 @@ static inline bool fish_is_strip(const struct fish_parameters *from) {
 enum status fish_school_create(struct arena *parent, struct school **school,
                                const struct school_parameters *parameters);
 
+/* Fail with STATUS_CASE if two fish would overlap at the places that control laws hold, for offsets of the noses from
+ * those of the leaders, or for those of the case if offset is NULL                                 (n_fish, 2), m */
+enum status fish_school_places(const struct school *school, const double *offset);
+
 /* Release the school with all data. Accepts NULL. */
 void fish_school_free(struct school *school);
 

@@ -27,7 +27,7 @@ enum linear_systems { LINEAR_BLOCKS, LINEAR_KLU };
 enum contact_action { CONTACT_REPEL, CONTACT_WARN, CONTACT_STOP };
 enum gust_profile { GUST_UNIFORM, GUST_SINE, GUST_STEP };
 enum surge { SURGE_GIVEN, SURGE_FREE };
-enum control_law { CONTROL_NONE, CONTROL_HEADING, CONTROL_AVERAGED_HEADING, CONTROL_COURSE };
+enum control_law { CONTROL_NONE, CONTROL_HEADING, CONTROL_AVERAGED_HEADING, CONTROL_COURSE, CONTROL_PLACE };
 
 /* A list of numbers, of pairs (then 2 n numbers, pair after pair), or of rows (width n numbers, row after row). Owned
  * by the enclosing structure. */
@@ -146,6 +146,13 @@ struct control_parameters {
     double filter;        /* s */
     double rate;          /* s-1 */
     double ramp;          /* s */
+
+    /* law place */
+    char *of;                                                  /* name of the leader */
+    double offset[2];                                          /* of the nose from that of the leader, m */
+    double amplitude_gain, amplitude_damping, amplitude_limit; /* per length; beats per length; 1 */
+    double lookahead;                                          /* body lengths */
+    double hold_time;                                          /* periods */
 };
 
 struct fish_parameters {

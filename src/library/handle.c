@@ -221,10 +221,10 @@ static const struct set_key {
     const char *key;
     bool is_number;
 } keys[] = {
-    {"wave.amplitude", true}, {"wave.frequency", true},          {"control.bias", true},
-    {"motion.heave", true},   {"control.desired_heading", true}, {"control.waypoints", false},
+    {"wave.amplitude", true},          {"wave.frequency", true},  {"control.bias", true},       {"motion.heave", true},
+    {"control.desired_heading", true}, {"control.offset", false}, {"control.waypoints", false},
 };
-enum set_key_index { AMPLITUDE, FREQUENCY, BIAS, HEAVE, DESIRED_HEADING, WAYPOINTS, N_KEYS };
+enum set_key_index { AMPLITUDE, FREQUENCY, BIAS, HEAVE, DESIRED_HEADING, OFFSET, WAYPOINTS, N_KEYS };
 
 /* Change the control memory of a fish, under the conditions of the key. */
 static enum status change_memory(const struct fish *fish, const struct state *state, enum set_key_index index, int n,
@@ -265,10 +265,18 @@ static enum status change_memory(const struct fish *fish, const struct state *st
             if (law == CONTROL_NONE) {
                 return status_fail(STATUS_CASE, "%s: %s has no control law: choose a control.law", key, name);
             }
+            if (law == CONTROL_PLACE) {
+                return status_fail(STATUS_CASE, "%s: %s points where its leader does, with 'law: place'", key, name);
+            }
             if (control_n_waypoints(fish, memory) > 0) {
                 return status_fail(STATUS_CASE, "%s: %s follows waypoints", key, name);
             }
             control_set(fish, memory, CONTROL_SET_HEADING, state->t, angle_radians(values[0]));
+            break;
+        case OFFSET:
+            if (law != CONTROL_PLACE) return status_fail(STATUS_CASE, "%s: %s needs 'law: place'", key, name);
+            control_set(fish, memory, CONTROL_SET_OFFSET_X, state->t, values[0]);
+            control_set(fish, memory, CONTROL_SET_OFFSET_Y, state->t, values[1]);
             break;
         default:
             if (law != CONTROL_COURSE && law != CONTROL_AVERAGED_HEADING) {
@@ -279,6 +287,20 @@ static enum status change_memory(const struct fish *fish, const struct state *st
     return STATUS_OK;
 }
 
+/* Fail if the offset in memory puts fish f on top of another one. */
+static enum status refuse_places(const struct simulation *simulation, int f, const struct control_memory *memory) {
+    const struct school *const school = simulation->school;
+    ARENA(arena, NULL, "the offsets");
+    double *offset;
+    NEW(arena, offset, 2 * school->n_fish);
+    for (int g = 0; g < school->n_fish; g++) {
+        for (int d = 0; d < 2; d++) {
+            offset[2 * g + d] = control_offset(&school->fish[g], g == f ? memory : &simulation->state->control[g], d);
+        }
+    }
+    return fish_school_places(school, offset);
+}
+
 enum status handle_set_key(const struct simulation *simulation, int fish, const char *key, int n,
                            const double *values) {
     int found = 0;
@@ -286,11 +308,12 @@ enum status handle_set_key(const struct simulation *simulation, int fish, const 
     if (found == N_KEYS) {
         return status_fail(STATUS_CASE,
                            "'%s' cannot be set: only wave.amplitude, wave.frequency, control.bias, "
-                           "motion.heave, control.desired_heading and control.waypoints can",
+                           "motion.heave, control.desired_heading, control.offset and control.waypoints can",
                            key);
     }
     const bool is_number = keys[found].is_number;
     if (is_number && n != 1) return status_fail(STATUS_CASE, "%s: %d numbers: give one", key, n);
+    if (found == OFFSET && n != 2) return status_fail(STATUS_CASE, "%s: %d numbers: give two", key, n);
     if (!is_number && (n < 1 || n % 2 != 0 || n > 2 * CONTROL_MAX_WAYPOINTS)) {
         return status_fail(STATUS_CASE, "%s: %d numbers: give 1 to %d pairs", key, n, CONTROL_MAX_WAYPOINTS);
     }
@@ -302,11 +325,13 @@ enum status handle_set_key(const struct simulation *simulation, int fish, const 
     const struct fish *const of = &simulation->school->fish[fish];
     struct control_memory memory = simulation->state->control[fish];
     TRY(change_memory(of, simulation->state, (enum set_key_index)found, n, values, &memory));
-    const double turn = fish_largest_turn(of, 1 + memory.amplitude.target, control_largest_bias(of, &memory));
+    const double turn =
+        fish_largest_turn(of, control_largest_amplitude(of, &memory), control_largest_bias(of, &memory));
     if (!(turn < M_PI)) {
         return status_fail(STATUS_CASE, "the wave would turn a joint of %s by up to %.3g rad; it must stay below 3.14",
                            of->name, turn);
     }
+    if (found == OFFSET) TRY(refuse_places(simulation, fish, &memory));
     simulation->state->control[fish] = memory;
     return STATUS_OK;
 }

@@ -108,9 +108,9 @@ enum status handle_take_up(struct shoal *run, const struct state *from, const st
                            const struct integrator_counts *totals);
 
 /* Change gait or goal of a fish at an event (doc/model.md, section 11): set the value of a key: "wave.amplitude",
- * "wave.frequency", "control.bias", "control.desired_heading" (one number, in the unit of the case file) or
- * "control.waypoints" (pairs, m). Fails with STATUS_CASE for an invalid value, or if the control law of the fish
- * ignores the key; the fish is then unchanged. */
+ * "wave.frequency", "control.bias", "control.desired_heading" (one number, in the unit of the case file),
+ * "control.offset" (x, y, m) or "control.waypoints" (pairs, m). Fails with STATUS_CASE for an invalid value, or if the
+ * control law of the fish ignores the key; the fish is then unchanged. */
 enum status handle_set_key(const struct simulation *simulation, int fish, const char *key, int n, const double *values);
 
 #endif

@@ -251,7 +251,8 @@ static enum status read_pair(const struct netcdf_reader *reader, const char *nam
 
 /* The most telling parts of the mode of multiplier i: "b ahead 1.00, b speed 0.86". */
 static enum status print_mode(const struct netcdf_reader *reader, size_t i, size_t n_fish, FILE *stream) {
-    static const char *const slow[STEADY_QUANTITIES] = {"speed", "slip", "turn", "heading", "ahead", "aside"};
+    static const char *const slow[STEADY_QUANTITIES] = {"speed", "slip",  "turn",      "heading",
+                                                        "ahead", "aside", "amplitude", "course"};
     const double least = 0.2;
     enum { MOST_PARTS = 4 };
     const size_t n = n_fish * STEADY_QUANTITIES;

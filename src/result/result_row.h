@@ -11,8 +11,9 @@
 
 /* The results of a search for a steady state (steady/steady.h): the variables steady_... */
 
-/* A fish has at most so many slow quantities, and multipliers. */
-enum { STEADY_QUANTITIES = 6 };
+/* A fish has at most so many slow quantities, and multipliers: enum steady_quantity without the shed circulation
+ * (steady/steady_map.h). */
+enum { STEADY_QUANTITIES = 8 };
 
 /* One fish: means over the last beat; without a beat the values at equilibrium. */
 struct steady_fish {

@@ -112,7 +112,8 @@ const struct result_variable result_table[] = {
     {"steady_mode",           {MULTIPLIER, FISH, SLOW, XY}, RESULT_REAL, "1",
      .of_steady = true, .owner = OF_STEADY, OF_STEADY_STATE(MODE),
      .long_name = "disturbance that grows by a multiplier: change of speed, slip, turn, heading, place ahead and place "
-                  "aside in units of length and beat, over the largest; real and imaginary parts"},
+                  "aside in units of length and beat, and of the amplitude and the course that law place adds, over "
+                  "the largest; real and imaginary parts"},
     {"steady_amplification",  {NONE},                 RESULT_REAL,    "1",      IN_STEADY(amplification),
      .long_name = "largest factor by which a disturbance of one slow quantity grows within 32 beats"},
     {"steady_growth",         {NONE},                 RESULT_REAL,    "s-1",    IN_STEADY(growth),

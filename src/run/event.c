@@ -124,15 +124,20 @@ static bool event_control(struct state *state, struct residual *residual) {
         struct control_view view = {
             .t = state->t, .interval = school->interval, .mean_heading = diagnostics_mean_heading(&state->history[f])};
         if (control_uses_moment(fish)) view.moment = drag_moment(fish, flow.u, flow.v, state->y);
-        view.has_course =
-            diagnostics_course(&state->history[f], school->interval, &view.course, &view.course_rate, &view.speed);
+        const bool holds_place = fish->control.law == CONTROL_PLACE;
+        view.has_course = diagnostics_course(&state->history[f], holds_place, school->interval, &view.course,
+                                             &view.course_rate, &view.speed);
+        if (holds_place && view.has_course) {
+            diagnostics_leader(&state->history[f], view.away, view.away_change, &view.leader_heading);
+        }
 
-        const double before = control_rate(fish, memory, state->t, 0, state->y);
+        const double before = control_rate(fish, memory, state->t, 0, state->y), drive_before = memory->drive_rate;
         if (control_event(fish, memory, &view, state->y)) {
 #pragma omp atomic write
             jumps = true;
         }
-        const double change = control_rate(fish, memory, state->t, 0, state->y) - before;
+        const double change =
+            fabs(control_rate(fish, memory, state->t, 0, state->y) - before) + fabs(memory->drive_rate - drive_before);
         if (fabs(change) > 0) diagnostics_begin(residual, state, f);
     }
 

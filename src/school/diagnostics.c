@@ -52,13 +52,21 @@ void diagnostics_remember(struct residual *residual, struct state *state) {
         diagnostics_fluid_force(forces.resistive, forces.reactive, &forces.pressure, sample.force);
         sample.leading_edge = forces.pressure.leading_edge_a0;
         sample.bias = y[fish->at.phi0];
+        const struct fish *const leader =
+            fish->control.leader >= 0 ? &residual->school->fish[fish->control.leader] : NULL;
+        if (leader) {
+            sample.leader[0] = fish_mass_mean(leader, y + leader->at.x);
+            sample.leader[1] = fish_mass_mean(leader, y + leader->at.y);
+            sample.leader_heading = control_heading(leader, y);
+        }
         memcpy(sample.work, state->balance[f].work, sizeof sample.work);
 
-        // continue from the sample before: the heading is unwrapped, and the drift of the stream is integrated by
+        // continue from the sample before: the headings are unwrapped, and the drift of the stream is integrated by
         // trapezoids
         if (history->n > 0) {
             const struct sample *before = state_recall(history, 0);
             sample.heading = before->heading + angle_wrap(sample.heading - before->heading);
+            sample.leader_heading = before->leader_heading + angle_wrap(sample.leader_heading - before->leader_heading);
             for (int i = 0; i < 2; i++) {
                 sample.drifted[i] = before->drifted[i] + interval * (before->stream[i] + sample.stream[i]) / 2;
             }
@@ -75,12 +83,18 @@ void diagnostics_remember(struct residual *residual, struct state *state) {
     }
 }
 
-bool diagnostics_course(const struct history *history, double interval, double *course, double *rate, double *speed) {
+bool diagnostics_course(const struct history *history, bool through_water, double interval, double *course,
+                        double *rate, double *speed) {
     if (history->n < 2 || history->n < history->capacity) return false;
 
     const struct sample *latest = state_recall(history, 0), *earliest = state_recall(history, history->n - 1);
-    const double way[2] = {latest->com[0] - earliest->com[0], latest->com[1] - earliest->com[1]};
-    const double change[2] = {latest->velocity[0] - earliest->velocity[0], latest->velocity[1] - earliest->velocity[1]};
+    double way[2], change[2];
+    for (int i = 0; i < 2; i++) {
+        way[i] = latest->com[i] - earliest->com[i];
+        change[i] = latest->velocity[i] - earliest->velocity[i];
+        if (through_water) way[i] -= latest->drifted[i] - earliest->drifted[i];
+        if (through_water) change[i] -= latest->stream[i] - earliest->stream[i];
+    }
     const double square = way[0] * way[0] + way[1] * way[1];
     *course = atan2(way[1], way[0]);
     *rate = square > 0 ? (way[0] * change[1] - way[1] * change[0]) / square : 0;
@@ -96,6 +110,21 @@ double diagnostics_mean_heading(const struct history *history) {
         sum += (age == 0 || age == history->n - 1 ? 0.5 : 1) * state_recall(history, age)->heading;
     }
     return sum / (history->n - 1);
+}
+
+void diagnostics_leader(const struct history *history, double away[2], double change[2], double *heading) {
+    away[0] = away[1] = change[0] = change[1] = *heading = 0;
+    for (int age = 0; age < history->n; age++) {
+        const struct sample *const sample = state_recall(history, age);
+        const double weight = (age == 0 || age == history->n - 1 ? 0.5 : 1) / (history->n - 1);
+        for (int i = 0; i < 2; i++) away[i] += weight * (sample->leader[i] - sample->com[i]);
+        *heading += weight * sample->leader_heading;
+    }
+
+    const struct sample *latest = state_recall(history, 0), *earliest = state_recall(history, history->n - 1);
+    for (int i = 0; i < 2; i++) {
+        change[i] = latest->leader[i] - latest->com[i] - (earliest->leader[i] - earliest->com[i]);
+    }
 }
 
 // where the tail is across the path of the fish, in the frame of the water
@@ -277,7 +306,7 @@ static void diagnostics_fill_fish(struct residual *residual, const struct state 
     to->swept_vortices = swept_vortices(residual->school, state, diagnostics, f);
 
     to->phi0 = y[fish->at.phi0];
-    const struct fish_gait gait = control_gait(fish, &state->control[f], state->t);
+    const struct fish_gait gait = control_gait(fish, &state->control[f], state->t, 0);
     to->wave_amplitude = gait.amplitude * fish->amplitude;
     to->wave_frequency = gait.omega / (2 * M_PI);
     to->shed_circulation = y[fish->at.circulation];

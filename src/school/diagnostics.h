@@ -16,8 +16,15 @@
 void diagnostics_remember(struct residual *residual, struct state *state);
 
 /* Find the course, which is the direction in which the centre of mass has moved over the last period, rad, its rate,
- * rad s-1, and the mean speed, m s-1. Without any movement all are 0. Returns false in the first period, then true. */
-bool diagnostics_course(const struct history *history, double interval, double *course, double *rate, double *speed);
+ * rad s-1, and the mean speed, m s-1, over ground or through the water. Without any movement all are 0. Returns false
+ * in the first period, then true. */
+bool diagnostics_course(const struct history *history, bool through_water, double interval, double *course,
+                        double *rate, double *speed);
+
+/* Find what law place sees of the leader, after the first period: the vector from the centre of mass to that of the
+ * leader, as a mean over the last period, m, its change in this period, m, and the mean heading of the leader, rad,
+ * unwrapped. */
+void diagnostics_leader(const struct history *history, double away[2], double change[2], double *heading);
 
 /* The mean of the headings in a history, rad, unwrapped. */
 double diagnostics_mean_heading(const struct history *history);

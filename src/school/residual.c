@@ -245,7 +245,7 @@ void residual_actuate(struct residual *residual, int f, double t, const double *
     const struct state *const state = residual->state;
     const struct actuation muscle = residual_muscle(residual, f);
     const double phi0_rate = control_rate(fish, &state->control[f], t, t - state->t, y);
-    actuation_find(fish, control_gait(fish, &state->control[f], t), y[fish->at.phi0], phi0_rate, &muscle);
+    actuation_find(fish, control_gait(fish, &state->control[f], t, t - state->t), y[fish->at.phi0], phi0_rate, &muscle);
 }
 
 // bring the force of the fluid on fish f up to date; yp: NULL without the rates

@@ -110,6 +110,16 @@ void rigid_change(const struct school *school, struct state *state, int f, const
             sample->tail[j] += change->place[j];
         }
     }
+    // and those of the fish that hold a place beside it
+    for (int g = 0; g < school->n_fish; g++) {
+        if (school->fish[g].control.leader != f) continue;
+        for (int i = 0; i < state->history[g].n_slots; i++) {
+            struct sample *const sample = &state->history[g].sample[i];
+            rotate(before.place, change->heading, &sample->leader[0], &sample->leader[1]);
+            sample->leader_heading += change->heading;
+            for (int j = 0; j < 2; j++) sample->leader[j] += change->place[j];
+        }
+    }
     if (history->n == 0) return;
 
     // give the newest sample the stream at its new position, from which the next event integrates drifted

@@ -96,6 +96,17 @@ static double solution_warning(enum warning warning, const struct subject *subje
             // a bias that follows the beat or its second harmonic reverses up to four times in a period
             return now->bias_reversals / 4;
 
+        case WARNING_PLACE:
+            snprintf(line, WARNING_BYTES,
+                     "%s needs %.2g times its amplitude to hold its place, the limit of control.amplitude_limit "
+                     "(%.3g), where it loses the place: choose another control.offset, or another amplitude or "
+                     "frequency of %s or of its leader",
+                     who, 1 + subject->state->control[subject->f].drive, fish->control.amplitude_limit, who);
+
+            // 0.98 is the hyperbolic tangent of 2.3
+            if (fish->control.law != CONTROL_PLACE) return 0;
+            return fabs(subject->state->control[subject->f].drive) / (0.98 * fish->control.amplitude_limit);
+
         case WARNING_STALL:
             snprintf(line, WARNING_BYTES,
                      "%s stalls: the flow separates at the nose for %.0f %% of the period (limit 50 %%), and the speed "
@@ -221,9 +232,9 @@ static double model_warning(enum warning warning, const struct subject *subject,
 static double (*const of_fish[N_WARNINGS])(enum warning, const struct subject *, const char *, char *) = {
     [WARNING_ENERGY] = solution_warning,   [WARNING_BEATS] = resolution_warning, [WARNING_DRIFT] = solution_warning,
     [WARNING_EVENTS] = resolution_warning, [WARNING_SHEET] = resolution_warning, [WARNING_MODES] = model_warning,
-    [WARNING_EDGE] = solution_warning,     [WARNING_CHATTER] = solution_warning, [WARNING_CUSP] = model_warning,
-    [WARNING_TAIL] = resolution_warning,   [WARNING_FORCE] = model_warning,      [WARNING_PITCH] = model_warning,
-    [WARNING_STALL] = solution_warning,
+    [WARNING_EDGE] = solution_warning,     [WARNING_CHATTER] = solution_warning, [WARNING_PLACE] = solution_warning,
+    [WARNING_CUSP] = model_warning,        [WARNING_TAIL] = resolution_warning,  [WARNING_FORCE] = model_warning,
+    [WARNING_PITCH] = model_warning,       [WARNING_STALL] = solution_warning,
 };
 
 // ---- divergence
@@ -303,6 +314,8 @@ const struct warning_words warnings_words[N_WARNINGS] = {
     [WARNING_CHATTER] = {"a controller chatters",
                          "the steering bias of a law reverses more than four times in the last period, by at least 1 % "
                          "of control.limit"},
+    [WARNING_PLACE] = {"a place out of reach",
+                       "law place changes the amplitude by more than 98 % of control.amplitude_limit"},
     [WARNING_CUSP] = {"a cusp", "a Joukowski body that bends, with 'tail_thickness: 0'"},
     [WARNING_TAIL] =
         {"few nodes at the tail",

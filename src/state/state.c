@@ -191,6 +191,10 @@ const struct state_row state_table[] = {
     {"control.n_waypoints", OF_CONTROL(STATE_INTEGER, n_waypoints), STATE_NO_ARRAY},
     {"control.waypoints", OF_CONTROL(STATE_REAL, waypoints), STATE_NO_ARRAY},
     {"control.set_out", OF_CONTROL(STATE_REAL, set_out), STATE_NO_ARRAY},
+    {"control.drive", OF_CONTROL(STATE_REAL, drive), STATE_NO_ARRAY},
+    {"control.drive_rate", OF_CONTROL(STATE_REAL, drive_rate), STATE_NO_ARRAY},
+    {"control.hold", OF_CONTROL(STATE_REAL, hold), STATE_NO_ARRAY},
+    {"control.offset", OF_CONTROL(STATE_REAL, offset), STATE_NO_ARRAY},
 
     {"history.capacity", OF_HISTORY(STATE_UNKEPT, capacity), STATE_NO_ARRAY},
     {"history.n", OF_HISTORY(STATE_INTEGER, n), STATE_NO_ARRAY},

@@ -27,6 +27,8 @@ struct sample {
     double heading;         /* rad, unwrapped */
     double leading_edge;    /* A_0; NaN unless force: pressure */
     double bias;            /* phi0 */
+    double leader[2];       /* law place: centre of mass of the leader, m; other laws: 0 */
+    double leader_heading;  /* law place: rad, unwrapped; other laws: 0 */
     double work[N_WORKS];   /* since the start, J */
 };
 struct history {

@@ -184,7 +184,7 @@ static void warn_of_state(struct run *run) {
         warn(run, "the steady state %s unstable: a disturbance grows by the factor %.4g +- %.2g a beat (limit 1)%s; %s",
              largest - error > 1 ? "is" : "may be", largest, error,
              largest - error > 1 ? ", so that a run leaves it" : "",
-             school->n_fish > 1 ? "search from another place, or hold the places by control"
+             school->n_fish > 1 ? "search from another place, or hold the places by control (control.law: place)"
                                 : "a deeper body, cross-flow drag (drag.normal) or control.law: course stabilises it");
     }
 

@@ -62,7 +62,8 @@ enum status steady_map_create(struct steady_map *map, struct simulation *simulat
     NEW(simulation->arena, map->last, school->n_fish);
     NEW(simulation->arena, map->before, school->n_fish);
     for (int f = 0; f < school->n_fish && map->steered < 0; f++) {
-        if (school->fish[f].control.law != CONTROL_NONE) map->steered = f;
+        const enum control_law law = school->fish[f].control.law;
+        if (law != CONTROL_NONE && law != CONTROL_PLACE) map->steered = f;
     }
     TRY(steady_map_refuse(school));
     map->period = first_beating(school)->period;
@@ -158,7 +159,9 @@ double steady_map_scale(const struct steady_map *map, struct steady_unknown unkn
         case STEADY_SPEED:
         case STEADY_SLIP: return length / map->period;
         case STEADY_TURN: return 1 / map->period;
-        case STEADY_HEADING: return 1;
+        case STEADY_HEADING:
+        case STEADY_HOLD_ALONG:
+        case STEADY_HOLD_ACROSS: return 1;
         case STEADY_SHED: return length * length / map->period;
         default: return length;
     }
@@ -194,6 +197,8 @@ void steady_map_read(const struct steady_map *map, int n, const struct steady_un
             case STEADY_AHEAD: value[i] = place[0]; break;
             case STEADY_ASIDE: value[i] = place[1]; break;
             case STEADY_SHED: value[i] = state->wake[f].shed_before; break;
+            case STEADY_HOLD_ALONG: value[i] = state->control[f].hold[0]; break;
+            case STEADY_HOLD_ACROSS: value[i] = state->control[f].hold[1]; break;
         }
     }
 }
@@ -240,6 +245,8 @@ enum status steady_map_add(struct steady_map *map, int n, const struct steady_un
                     state->y[school->fish[f].at.circulation] += add[i];
                     wake_add_shed(&state->wake[f], add[i]);
                     break;
+                case STEADY_HOLD_ALONG: state->control[f].hold[0] += add[i]; break;
+                case STEADY_HOLD_ACROSS: state->control[f].hold[1] += add[i]; break;
             }
         }
 

@@ -13,7 +13,8 @@
 /* The slow quantities of a fish: velocity relative to the water along the heading and to the left, rate of turning;
  * heading, and place ahead and to the left of the first fish, in the frame of the first fish; shed circulation. The
  * heading of the first fish is relative to the desired heading of the first control law. A change of this heading
- * rotates the whole school about the first fish. Added circulation counts as shed infinitely long ago. */
+ * rotates the whole school about the first fish. Added circulation counts as shed infinitely long ago. The integrals of
+ * control law place: of the amplitude and of the course. */
 enum steady_quantity {
     STEADY_SPEED,
     STEADY_SLIP,
@@ -21,6 +22,8 @@ enum steady_quantity {
     STEADY_HEADING,
     STEADY_AHEAD,
     STEADY_ASIDE,
+    STEADY_HOLD_ALONG,
+    STEADY_HOLD_ACROSS,
     STEADY_SHED
 };
 
@@ -51,7 +54,7 @@ struct steady_beat {
 struct steady_map {
     struct simulation *simulation;
     bool is_formation;                 /* the residual includes places */
-    int steered;                       /* first fish with a control law; -1: no fish */
+    int steered;                       /* first fish with a control law other than place; -1: no fish */
     long events;                       /* per beat */
     double period;                     /* s */
     int n_beats;                       /* beats since the start */

@@ -71,6 +71,8 @@ enum status steady_problem_create(struct steady_problem *problem, const struct c
             {STEADY_TURN, swims, false},
             {STEADY_ASIDE, swims && follows, true},
             {STEADY_HEADING, swims && (follows || is_steered), follows},
+            {STEADY_HOLD_ALONG, school->fish[f].control.law == CONTROL_PLACE, false},
+            {STEADY_HOLD_ACROSS, school->fish[f].control.law == CONTROL_PLACE, false},
         };
         if (is_free && !follows) problem->solves_speed = true;
         for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {

@@ -132,6 +132,131 @@ TEST(averaged_heading_moves_the_bias_with_bounded_rate) {
     NEAR(memory->phi0, target, 1e-15, 0);
 }
 
+// ---- law place
+
+#define PLACE                                                                                  \
+    TIME "defaults: {fish: {nodes: 7}}\nfish: [{name: one}, {start: {position: [1.4, 0.3]},\n" \
+         "  control: {law: place, of: one, offset: [1.4, 0.3], hold_time: 12, rate: 100}}]\n"
+
+TEST(a_place_is_ahead_and_to_the_left_of_the_leader_and_turns_with_it) {
+    // 0.2 behind the place and 0.1 to the right of it, for leaders that point west, as in the case, and north
+    const double heading[] = {pi, pi / 2};
+    for (int i = 0; i < 2; i++) {
+        struct setup setup = setup_of(PLACE);
+        const struct fish *const fish = &setup.school->fish[1];
+        struct control_memory *const memory = &setup.state->control[1];
+        const double c = cos(heading[i] - pi), s = sin(heading[i] - pi), way[] = {-1.4 - 0.2, -0.3 - 0.1};
+        struct control_view view = {.t = 2, .interval = 0.02, .leader_heading = heading[i], .speed = 0.8};
+        view.away[0] = c * way[0] - s * way[1];
+        view.away[1] = s * way[0] + c * way[1];
+        view.away_change[0] = 0.01 * cos(heading[i]);
+        view.away_change[1] = 0.01 * sin(heading[i]);
+
+        // nothing before a period has passed
+        control_event(fish, memory, &view, setup.state->y);
+        NEAR(memory->drive_rate, 0, 0, 0);
+        view.has_course = true;
+        view.course = heading[i];
+        control_event(fish, memory, &view, setup.state->y);
+        NEAR(0.02 * memory->drive_rate, 0.5 * tanh((4 * 0.2 + 6 * 0.01) / 0.5), 1e-13, 0);
+        // west: right is north, +y, so the place lies to the left, at -y
+        const double desired = heading[i] + atan(0.1 / 3);
+        NEAR(control_desired_heading(fish, memory, 2, setup.state->y), desired, 1e-13, 0);
+        const double weight = 0.8 * 0.8 / (0.8 * 0.8 + 0.1 * 0.1);
+        NEAR(0.02 * memory->phi0_rate, 0.5 * tanh(weight * 2 * (heading[i] - desired)), 1e-13, 0);
+    }
+}
+
+TEST(the_amplitude_of_a_place_is_linear_between_events_with_the_rate_of_the_gait) {
+    struct setup setup = setup_of(PLACE);
+    const struct fish *const fish = &setup.school->fish[1];
+    struct control_memory *const memory = &setup.state->control[1];
+    memory->drive = 0.2;
+    memory->drive_rate = -0.5;
+    control_set(fish, memory, CONTROL_SET_AMPLITUDE, 0.1, 0.5 * fish->amplitude);
+    const double h = 1e-6, t = 0.3;
+    const struct fish_gait gait = control_gait(fish, memory, t, 0.01);
+    const double left = control_gait(fish, memory, t - h, 0.01 - h).amplitude;
+    const double right = control_gait(fish, memory, t + h, 0.01 + h).amplitude;
+    NEAR(gait.amplitude_rate, (right - left) / (2 * h), 1e-8, 0);
+    control_advance(memory, 0.02);
+    NEAR(memory->drive, 0.19, 1e-15, 0);
+    // once the ramps have ended
+    NEAR(control_gait(fish, memory, 5, 0).amplitude, 0.5 * 1.19, 1e-14, 0);
+}
+
+/* A fish whose speed, lengths per period, answers to its amplitude, and whose course to the desired one, with lags of
+ * first order: doc/model.md, section 11. place: behind and across, lengths. */
+struct lags {
+    double gain, speed_time, course_time; /* K, T_u, T_c */
+    double place[2], speed, course;
+};
+
+// n periods under the law of the case, in explicit Euler steps from event to event
+static void follow_law(struct setup *setup, struct lags *lags, int n_periods) {
+    const struct fish *const fish = &setup->school->fish[1];
+    struct control_memory *const memory = &setup->state->control[1];
+    const double step = 0.02;
+    for (int n = 0; n < 50 * n_periods; n++) {
+        control_advance(memory, step);
+        // ahead is west, to the left is south
+        const struct control_view view = {.t = n * step,
+                                          .interval = step,
+                                          .has_course = true,
+                                          .leader_heading = pi,
+                                          .away = {-1.4 - lags->place[0], -0.3 - lags->place[1]},
+                                          .away_change = {lags->speed, 0}};
+        control_event(fish, memory, &view, setup->state->y);
+        const double desired = control_desired_heading(fish, memory, n * step, setup->state->y) - pi;
+        lags->place[0] -= step * lags->speed;
+        lags->place[1] -= step * 0.8 * lags->course;
+        lags->speed += step * (lags->gain * memory->drive - lags->speed) / lags->speed_time;
+        lags->course += step * (desired - lags->course) / lags->course_time;
+    }
+}
+
+// the root of a s^3 + b s^2 + c s + d in an interval where it changes sign once
+static double root_between(double low, double high, const double of[4]) {
+    double s = 0;
+    for (int i = 0; i < 60; i++) {
+        s = (low + high) / 2;
+        const double at_low = ((of[0] * low + of[1]) * low + of[2]) * low + of[3];
+        const double here = ((of[0] * s + of[1]) * s + of[2]) * s + of[3];
+        *(at_low * here > 0 ? &low : &high) = s;
+    }
+    return s;
+}
+
+TEST(a_place_is_reached_at_the_rate_of_the_slowest_root) {
+    struct setup setup = setup_of(PLACE);
+    struct lags lags = {.gain = 0.26, .speed_time = 2.8, .course_time = 1.5, .place = {0.01, 0.01}};
+    const double K = lags.gain, per_length = 0.8 / 3;
+    const double along = root_between(-0.2, -0.05, (const double[]){2.8, 1 + K * 6, K * 4, K * 4 / 12});
+    const double across = root_between(-0.2, -0.05, (const double[]){1.5, 1, per_length, per_length / 12});
+    // the other roots have decayed to less than a thousandth of the slowest one
+    follow_law(&setup, &lags, 60);
+    const double before[] = {lags.place[0], lags.place[1]};
+    follow_law(&setup, &lags, 20);
+    // steps of 0.02 periods change the rate of 0.1 per period by a thousandth
+    NEAR(log(lags.place[0] / before[0]) / 20, along, 2e-3 * fabs(along), 0);
+    NEAR(log(lags.place[1] / before[1]) / 20, across, 2e-3 * fabs(across), 0);
+    AT_MOST(fabs(lags.place[0]) + fabs(lags.place[1]), 1e-6);
+}
+
+// a fish that needs another amplitude than its leader keeps its place exactly: the integral supplies it
+TEST(a_place_is_held_without_a_standing_error) {
+    struct setup setup = setup_of(PLACE);
+    struct lags lags = {.gain = 0.26, .speed_time = 2.8, .course_time = 1.5};
+    setup.state->control[1].hold[0] = 0.1;
+    setup.state->control[1].hold[1] = -0.05;
+    follow_law(&setup, &lags, 10);
+    ABOVE(fabs(lags.place[0]), 1e-3);
+    ABOVE(fabs(lags.place[1]), 1e-3);
+    follow_law(&setup, &lags, 200);
+    NEAR(lags.place[0], 0, 1e-9, 0);
+    NEAR(lags.place[1], 0, 1e-9, 0);
+}
+
 // value of a law with feedforward 1 for the filtered moment alone: the fish has the desired heading
 static double moment_seen(struct setup *setup, double since) {
     const struct fish *fish = setup->school->fish;
@@ -421,8 +546,8 @@ TEST(values_that_are_set_are_reached_after_the_ramp) {
     control_set(fish, memory, CONTROL_SET_AMPLITUDE, 3, 0.6);
     control_set(fish, memory, CONTROL_SET_FREQUENCY, 3, 2);
     control_set(fish, memory, CONTROL_SET_BIAS, 3, -0.1);
-    const struct fish_gait before = control_gait(fish, memory, 3), half = control_gait(fish, memory, 3.25),
-                           after = control_gait(fish, memory, 3.5), later = control_gait(fish, memory, 3.7);
+    const struct fish_gait before = control_gait(fish, memory, 3, 0), half = control_gait(fish, memory, 3.25, 0),
+                           after = control_gait(fish, memory, 3.5, 0), later = control_gait(fish, memory, 3.7, 0);
     // parts of wave.amplitude
     NEAR(before.amplitude, 1, 1e-14, 0);
     NEAR(half.amplitude, 0.875, 1e-14, 0);
@@ -480,8 +605,8 @@ TEST(rates_of_a_gait_that_changes_are_those_of_its_values) {
     control_set(fish, memory, CONTROL_SET_AMPLITUDE, 3, 0.4);
     control_set(fish, memory, CONTROL_SET_FREQUENCY, 3, 2);
     const double h = 1e-5;
-    const struct fish_gait left = control_gait(fish, memory, 3.2 - h), right = control_gait(fish, memory, 3.2 + h),
-                           gait = control_gait(fish, memory, 3.2);
+    const struct fish_gait left = control_gait(fish, memory, 3.2 - h, 0),
+                           right = control_gait(fish, memory, 3.2 + h, 0), gait = control_gait(fish, memory, 3.2, 0);
     BELOW(gait.amplitude, 0.7);
     BELOW(gait.amplitude_rate, -0.1);
     NEAR(gait.amplitude_rate, (right.amplitude - left.amplitude) / (2 * h), 1e-7, 0);

@@ -18,9 +18,9 @@ TEST(the_phase_of_the_beat_is_continuous) {
     school_run(simulation, 0.6);
     const struct fish *const fish = simulation->school->fish;
     const struct control_memory *const memory = simulation->state->control;
-    const struct fish_gait before = control_gait(fish, memory, 0.6);
+    const struct fish_gait before = control_gait(fish, memory, 0.6, 0);
     set(simulation, "wave.frequency", 2);
-    const struct fish_gait after = control_gait(fish, memory, 0.6), later = control_gait(fish, memory, 1);
+    const struct fish_gait after = control_gait(fish, memory, 0.6, 0), later = control_gait(fish, memory, 1, 0);
     const double pi = acos(-1);
     NEAR(after.angle, before.angle, 1e-14, 0);
     NEAR(after.omega, before.omega, 1e-14, 0);
@@ -36,9 +36,9 @@ TEST(amplitude_and_bias_get_there_within_the_ramp) {
     const struct fish *const fish = simulation->school->fish;
     set(simulation, "wave.amplitude", 0.2);
     set(simulation, "control.bias", -0.3);
-    NEAR(control_gait(fish, simulation->state->control, 0.6).amplitude, 1, 0, 0);
-    NEAR(control_gait(fish, simulation->state->control, 0.7).amplitude, 0.75, 1e-14, 0);
-    NEAR(control_gait(fish, simulation->state->control, 0.8).amplitude, 0.5, 0, 1e-15);
+    NEAR(control_gait(fish, simulation->state->control, 0.6, 0).amplitude, 1, 0, 0);
+    NEAR(control_gait(fish, simulation->state->control, 0.7, 0).amplitude, 0.75, 1e-14, 0);
+    NEAR(control_gait(fish, simulation->state->control, 0.8, 0).amplitude, 0.5, 0, 1e-15);
     school_run(simulation, 0.7);
     NEAR(simulation->state->y[fish->at.phi0], -0.1, 1e-12, 0);
     school_run(simulation, 0.8);
@@ -94,6 +94,37 @@ TEST(a_desired_heading_is_taken_up_the_short_way) {
     school_run(simulation, 0.6);
     set(simulation, "control.desired_heading", 150);
     NEAR(control_desired_heading(fish, memory, 0.9, NULL), 150 * degree, 1e-14, 0);
+}
+
+TEST(the_offset_of_a_place_is_taken_up) {
+    struct simulation *const simulation =
+        school_simulation(SMALL
+                          "fish: [{name: one}, {name: two, start: {position: [0.3, 0.6]},\n"
+                          "        control: {law: place, of: one, offset: [0.3, 0.6], ramp: 0.2}}]\n");
+    school_run(simulation, 0.1);
+    const struct fish *const fish = &simulation->school->fish[1];
+    const struct control_memory *const memory = &simulation->state->control[1];
+    school_ok(handle_set_key(simulation, 1, "control.offset", 2, (const double[]){0.5, -0.7}));
+    NEAR(lead_value(&memory->offset[0], 0.2), 0.1, 1e-15, 0);
+    NEAR(control_offset(fish, memory, 0), 0.5, 1e-15, 0);
+    NEAR(control_offset(fish, memory, 1), -0.7, 1e-15, 0);
+
+    // not two pairs, not on top of the leader, not for a fish without the law
+    const struct {
+        int fish, n;
+        double x, y;
+        const char *words;
+    } bad[] = {{1, 4, 0.5, 0, "4 numbers: give two"},
+               {1, 2, 0.3, 0.01, "fish[1] (two) would hold its place on top of fish[0] (one): change control.offset"},
+               {0, 2, 0.5, 1, "one needs 'law: place'"}};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        const double values[] = {bad[i].x, bad[i].y, 1, 1};
+        assert_int_equal(handle_set_key(simulation, bad[i].fish, "control.offset", bad[i].n, values), STATUS_CASE);
+        if (!strstr(status_message(), bad[i].words)) fail_msg("'%s' is not in: %s", bad[i].words, status_message());
+        NEAR(control_offset(fish, memory, 0), 0.5, 1e-15, 0);
+    }
+    const double west = 180;
+    assert_int_equal(handle_set_key(simulation, 1, "control.desired_heading", 1, &west), STATUS_CASE);
 }
 
 TEST(waypoints_are_taken_up) {

@@ -297,6 +297,7 @@ MISUSE = [
     ("CaseError: .*0 numbers: give one", "run.set(0, 'wave.amplitude', [])"),
     ("CaseError: .*cannot be set: only wave.amplitude, wave.frequency", "run.set(0, 'wave.phase', 1)"),
     ("CaseError: set: control.waypoints: ", "run.set(0, 'control.waypoints', [[1, 2], [3]])"),
+    ("CaseError: .*needs 'law: place'", "run.set(0, 'control.offset', [1, 2])"),
     ("TypeError: set: control.waypoints: numbers", "run.set(0, 'control.waypoints', [object()])"),
     ("CaseError: .* too many", "run.set(0, 'control.waypoints', np.zeros(2**21))"),
     ("TypeError: a case is the path of a case file or a dict, not int 0", "shoal.Run(0)"),

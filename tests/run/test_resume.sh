@@ -106,6 +106,13 @@ for at in 0.05 0.06; do
     run run swimmer.yaml "${between[@]}" -o reference.nc --set time.end=0.12
     check "the wakes of the longer run, with a checkpoint at $at s" same between.nc reference.nc
 done
+# a fish that holds a place, after the first beat, without which its law does nothing
+sed 's/{law: heading, desired_heading: 170}/{law: place, of: a, offset: [0.3, 1.4]}/' swimmer.yaml >place.yaml
+beats=(--force -q --set time.checkpoint_interval=0.6 --set time.shedding_interval=0.02)
+run run place.yaml "${beats[@]}" -o beats.nc --set time.end=1.2
+run resume beats.ckpt -q --end 1.4
+run run place.yaml "${beats[@]}" -o reference.nc --set time.end=1.4
+check "a place that is held, with a checkpoint at 1.2 s" same beats.nc reference.nc
 run run swimmer.yaml -q -o placed.nc --set time.checkpoint_interval=0 --set time.end=0.06 --checkpoint-at 0.04
 run resume placed.ckpt -q --end 0.12
 check a_place_is_noted_once test "$(places placed.nc)" = 0.04

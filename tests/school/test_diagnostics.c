@@ -359,21 +359,49 @@ TEST(course_is_the_direction_of_the_way_in_the_last_period) {
     struct history history = {.capacity = 3, .n = 2, .last = 1, .sample = sample};
     double course, rate, speed;
     // no course in the first period, nor without a period
-    assert_false(diagnostics_course(&history, 0.1, &course, &rate, &speed));
+    assert_false(diagnostics_course(&history, false, 0.1, &course, &rate, &speed));
     const struct history none = {.capacity = 1, .n = 1, .sample = sample};
-    assert_false(diagnostics_course(&none, 0.1, &course, &rate, &speed));
+    assert_false(diagnostics_course(&none, false, 0.1, &course, &rate, &speed));
     history.n = 3;
     history.last = 2;
-    assert_true(diagnostics_course(&history, 0.1, &course, &rate, &speed));
+    assert_true(diagnostics_course(&history, false, 0.1, &course, &rate, &speed));
     NEAR(speed, sqrt(8) / 0.2, 0, 1e-14);
     NEAR(course, acos(-1) * 3 / 4, 1e-15, 0);
     // (-2, 2) x (0.3, -0.1)/8
     NEAR(rate, (-2 * -0.1 - 2 * 0.3) / 8, 1e-16, 1e-14);
     // without displacement
     sample[2] = sample[0];
-    assert_true(diagnostics_course(&history, 0.1, &course, &rate, &speed));
+    assert_true(diagnostics_course(&history, false, 0.1, &course, &rate, &speed));
     NEAR(speed, 0, 0, 0);
     NEAR(rate, 0, 0, 0);
+}
+
+TEST(course_through_the_water_leaves_the_drift_out) {
+    struct sample sample[3] = {{.velocity = {0.2, 0.1}, .stream = {0.1, 0}},
+                               {.com = {5, 5}},
+                               {.com = {-1, 2}, .velocity = {0.5, 0}, .stream = {0.2, 0.3}, .drifted = {1, 4}}};
+    const struct history history = {.capacity = 3, .n = 3, .last = 2, .sample = sample};
+    double course, rate, speed;
+    assert_true(diagnostics_course(&history, true, 0.1, &course, &rate, &speed));
+    NEAR(speed, sqrt(8) / 0.2, 0, 1e-14);
+    NEAR(course, -acos(-1) * 3 / 4, 1e-15, 0);
+    // (-2, -2) x (0.2, -0.4)/8
+    NEAR(rate, (-2 * -0.4 - -2 * 0.2) / 8, 1e-16, 1e-14);
+}
+
+TEST(the_leader_is_seen_in_the_mean_over_the_last_period) {
+    struct sample sample[4] = {{.leader = {7, 7}},
+                               {.com = {1, 0}, .leader = {3, 1}, .leader_heading = 3},
+                               {.com = {2, 0}, .leader = {3, 3}, .leader_heading = 3.2},
+                               {.com = {0, 0}, .leader = {2, 5}, .leader_heading = 3.6}};
+    const struct history history = {.capacity = 3, .n = 3, .last = 3, .sample = sample, .n_slots = 4};
+    double away[2], change[2], heading;
+    diagnostics_leader(&history, away, change, &heading);
+    NEAR(away[0], (2 / 2.0 + 1 + 2 / 2.0) / 2, 1e-15, 0);
+    NEAR(away[1], (1 / 2.0 + 3 + 5 / 2.0) / 2, 1e-15, 0);
+    NEAR(change[0], 0, 1e-15, 0);
+    NEAR(change[1], 4, 1e-15, 0);
+    NEAR(heading, (1.5 + 3.2 + 1.8) / 2, 1e-15, 0);
 }
 
 TEST(speed_and_strouhal_number_are_those_of_a_driven_plate) {

@@ -72,6 +72,13 @@ static const struct variant {
     {"headings in time", SMALL "fish: [{control: {law: heading, desired_heading: [[0, 180], [1, 120]]}}]\n"},
     {"waypoints", SMALL "fish: [{control: {law: heading, waypoints: [[-3, 1], [-4, 5]]}}]\n"},
     {"averaged heading", SMALL "fish: [{control: {law: averaged_heading, desired_heading: 150}}]\n"},
+    {"a place beside a fish", SMALL "fish:\n  - {name: one}\n"
+                                    "  - {nodes: 5, start: {position: [0.2, 0.6]},\n"
+                                    "     control: {law: place, of: one, offset: [0.2, 0.6]}}\n"},
+    {"a place beside a reactive fish", TIME "defaults: {fish: {nodes: 7, sheet_points: 9, force: reactive}}\n"
+                                            "fish:\n  - {name: one}\n"
+                                            "  - {start: {position: [0.2, 0.6]},\n"
+                                            "     control: {law: place, of: one, offset: [0.2, 0.6]}}\n"},
     {"averaged heading, waypoints", SMALL "fish: [{control: {law: averaged_heading, waypoints: [[-3, 1]]}}]\n"},
     {"prescribed head", SMALL "fish: [{motion: {prescribed: head, heave: 0.1, pitch: 10, pitch_phase: 70, "
                               "frequency: 1, pivot: 0.2}}]\n"},

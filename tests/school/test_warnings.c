@@ -26,9 +26,9 @@ static void expect_line(const struct simulation *simulation, enum warning warnin
 }
 
 // the warnings of a simulation, one character each: contact c, a body crosses itself x, divergence i, energy e,
-// momentum o, drift d, events v, sheet s, modes m, leading edge l, controller h, cusp u, few nodes at the
-// tail t, published force p, fast pitch f, stalled foil a, a faded wake w; the runs are short, and the warning of few
-// beats has its own test
+// momentum o, drift d, events v, sheet s, modes m, leading edge l, controller h, place out of reach y, cusp u,
+// few nodes at the tail t, published force p, fast pitch f, stalled foil a, a faded wake w; the runs are short,
+// and the warning of few beats has its own test
 static void expect_of(struct simulation *simulation, const char *expected) {
     simulate_measure(simulation);
     char line[WARNING_BYTES], found[N_WARNINGS + 1] = "";
@@ -36,7 +36,7 @@ static void expect_of(struct simulation *simulation, const char *expected) {
         if (w == WARNING_BEATS || !line_of(simulation, w, line)) continue;
         print_message("%s\n", line);
         assert_null(strchr(line, '\n'));
-        strncat(found, &"cxieo-dvsmlhutpfaw"[w], 1);
+        strncat(found, &"cxieo-dvsmlhyutpfaw"[w], 1);
     }
     assert_string_equal(found, expected);
 }
@@ -334,6 +334,17 @@ TEST(the_limits_are_those_of_the_manual) {
     expect_line(simulation, WARNING_CHATTER, NULL);
     now->bias_reversals = 5;
     expect_line(simulation, WARNING_CHATTER, "reverses 5 times");
+    // 98 % of the limit of the amplitude, of a fish that holds a place
+    struct control_law_data *const control = &simulation->school->fish[0].control;
+    simulation->state->control[0].drive = 0.395;
+    expect_line(simulation, WARNING_PLACE, NULL);
+    const enum control_law law = control->law;
+    control->law = CONTROL_PLACE;
+    control->amplitude_limit = 0.4;
+    expect_line(simulation, WARNING_PLACE, "needs 1.4 times its amplitude");
+    simulation->state->control[0].drive = -0.391;
+    expect_line(simulation, WARNING_PLACE, NULL);
+    control->law = law;
     // 1 % of the largest term, after a beat of the slowest fish, of 2 s
     struct diagnostics *const all = simulation->diagnostics;
     all->momentum_size = 3;

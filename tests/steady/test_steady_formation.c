@@ -58,6 +58,47 @@ TEST(between_two_stable_places_is_one_that_the_follower_leaves) {
     }
 }
 
+// two coarse fish, the second of which holds a place beside the first
+#define HELD                                                                    \
+    "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"          \
+    "steady: {formation: true, tolerance: 1e-4}\n"                              \
+    "defaults: {fish: {nodes: 9, sheet_points: 17, force: reactive,\n"          \
+    "  wave: {amplitude: 0.3}, start: {speed: 0.8}, control: {law: course}}}\n" \
+    "fish:\n  - {name: one}\n"                                                  \
+    "  - {start: {position: [0.5, 0.6]}, control: {law: place, of: one, offset: [0.5, 0.6]}}\n"
+
+TEST(a_place_that_is_held_is_one_steady_state) {
+    struct steady_setup setup;
+    steady_setup_find(&setup, HELD);
+    // of the follower also the integrals of its law
+    assert_int_equal(setup.problem.n_unknowns, 4 + 6 + 2);
+    BELOW(hypot(setup.multipliers.real[0], setup.multipliers.imaginary[0]), 0.95);
+    // the beats of the multipliers were others
+    steady_setup_beats(&setup, 2);
+    NEAR(setup.problem.map.last[1].speed, setup.problem.map.last[0].speed, 2e-4, 0);
+    BELOW(steady_map_residual(&setup.problem.map), 1e-4);
+
+    // the mean place is the offset, to the tolerance of the integrals, which grow by 1/3 and 1/36 of a length in a beat
+    const struct school *const school = setup.simulation->school;
+    double away[2], change[2], heading;
+    diagnostics_leader(&setup.simulation->state->history[1], away, change, &heading);
+    const double turn = heading - acos(-1), c = cos(turn), s = sin(turn);
+    NEAR(-away[0], 0.5 * c - 0.6 * s, 1e-3, 0);
+    NEAR(-away[1], 0.5 * s + 0.6 * c, 4e-3, 0);
+    ABOVE(fabs(setup.simulation->state->control[1].drive), 1e-3);
+
+    // a change by the search moves what the law has seen of the leader too: the school turns about the first fish, and
+    // the second one moves along the old heading of the first
+    const struct steady_unknown unknown[] = {{0, STEADY_HEADING}, {1, STEADY_AHEAD}};
+    const double add[] = {0.3, 0.05}, h = control_heading(school->fish, setup.simulation->state->y);
+    double later[2], turned;
+    school_ok(steady_map_add(&setup.problem.map, 2, unknown, add));
+    diagnostics_leader(&setup.simulation->state->history[1], later, change, &turned);
+    NEAR(turned, heading + 0.3, 1e-12, 0);
+    NEAR(later[0], cos(0.3) * away[0] - sin(0.3) * away[1] - 0.05 * cos(h), 1e-12, 0);
+    NEAR(later[1], sin(0.3) * away[0] + cos(0.3) * away[1] - 0.05 * sin(h), 1e-12, 0);
+}
+
 TEST(fish_that_swim_freely_keep_the_place_that_is_found) {
     struct steady_setup setup;
     steady_setup_open(&setup, COARSE "steady: {formation: true, tolerance: 1e-3}\ndefaults: {fish: {" FISH
