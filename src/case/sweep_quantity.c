@@ -52,6 +52,8 @@ const struct sweep_quantity sweep_quantities[SWEEP_N_QUANTITIES] = {
     {"steady_stiffness", 0, 0, NULL, NULL, 1},
     {"steady_power", 1, 0, NULL, NULL, 1},
     {"steady_growth", 0, 0, NULL, NULL, 1},
+    {"steady_multiplier", 0, 0, "1", "absolute value of the largest Floquet multiplier", 1},
+    {"steady_multiplier_error", 0, 0, "1", "error of the largest Floquet multiplier", 1},
 };
 
 int sweep_quantity_read(const char *name, struct yaml_mark mark, const char *path, int n_known,

@@ -20,7 +20,7 @@ enum {
     SWEEP_TAIL,
     SWEEP_STEADY_SPEED = 8,
     SWEEP_N_ORDERS = 20, /* of the first ones orders of convergence are observed: of runs or of steady states */
-    SWEEP_N_QUANTITIES = 41
+    SWEEP_N_QUANTITIES = 43
 };
 
 extern const struct sweep_quantity sweep_quantities[SWEEP_N_QUANTITIES];

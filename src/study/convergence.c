@@ -311,6 +311,12 @@ double convergence_noise(const struct case_values *study, const struct case_valu
     if (values->solver.step > 0) rtol = rounding;
     if (!sweep_is_steady(study)) return rtol;
 
+    // the multiplier: noise of the wake and size of the disturbances
+    if (quantity && strcmp(quantity, "steady_multiplier") == 0) {
+        return member_file_number(&members[m], "steady_multiplier_error", 0) /
+               member_file_number(&members[m], "steady_multiplier", 0);
+    }
+
     // the search: the distance from the fixed point, or an estimate by the residual
     const double residual = member_file_number(&members[m], "steady_residual", 0);
     const double ratio = member_file_number(&members[known], "steady_error", 0) /
@@ -616,6 +622,11 @@ void convergence_study_judge(struct error_study *study, const struct member_file
             study->parts[place] = sum;
             study->error[place] = fmin(sum, fabs(shift) + spread) + study->together[place];
             if (isnan(sum) || study->study->error->sensitivity) study->error[place] = NAN;
+            // the error of the differences is no part of any key
+            const bool is_multiplier = strcmp(member_file_quantity(study->quantity[q])->name, "steady_multiplier") == 0;
+            if (is_multiplier && study->relation == ERROR_VALUE) {
+                study->error[place] += member_file_number(&members[study->stated], "steady_multiplier_error", 0);
+            }
 
             // uncertain inputs are independent of each other and of the numerical errors
             double squares = 0;

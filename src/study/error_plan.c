@@ -147,7 +147,8 @@ static void row_set(const struct row *row, const char *path, int fish, double va
 /* Whether a quantity of the modes of small disturbances is requested. */
 static bool asks_for_modes(const struct error_study *study) {
     for (int q = 0; q < study->n_asked; q++) {
-        if (strncmp(member_file_quantity(study->quantity[q])->name, "steady_growth", 13) == 0) return true;
+        const char *const name = member_file_quantity(study->quantity[q])->name;
+        if (strncmp(name, "steady_growth", 13) == 0 || strcmp(name, "steady_multiplier") == 0) return true;
     }
     return false;
 }

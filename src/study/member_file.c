@@ -14,9 +14,18 @@ enum { MAX_FISH = 1000000 };
 
 // ---- the table of quantities: first the last rows of variables, then computed quantities
 
-static const char *const computed[] = {
-    "nose",       "tail",        "lateral_drift",      "mean_heading",     "nose_error",
-    "tail_error", "power_error", "evaluations_to_end", "wall_time_to_end", "beat_time"};
+static const char *const computed[] = {"nose",
+                                       "tail",
+                                       "lateral_drift",
+                                       "mean_heading",
+                                       "nose_error",
+                                       "tail_error",
+                                       "power_error",
+                                       "evaluations_to_end",
+                                       "wall_time_to_end",
+                                       "beat_time",
+                                       "steady_multiplier",
+                                       "steady_multiplier_error"};
 enum {
     NOSE,
     TAIL,
@@ -28,6 +37,8 @@ enum {
     EVALUATIONS,
     WALL_TIME,
     BEAT_TIME,
+    MULTIPLIER_SIZE,
+    MULTIPLIER_ERROR,
     N_COMPUTED
 };
 
@@ -61,7 +72,7 @@ const struct member_file_quantity *member_file_quantity(int i) {
                                                      .of_xy = from->of_xy,
                                                      .is_computed = true,
                                                      .of_comparison = c >= NOSE_ERROR && c <= WALL_TIME,
-                                                     .of_steady = c == BEAT_TIME};
+                                                     .of_steady = c >= BEAT_TIME};
         }
     }
 
@@ -201,6 +212,20 @@ static enum status compute_beat_time(const struct reading *reading) {
     return STATUS_OK;
 }
 
+/* Absolute value and error of the largest multiplier; NaN: none. */
+static enum status compute_multiplier(const struct reading *reading) {
+    static const char name[] = "steady_multiplier", error[] = "steady_multiplier_error";
+    const int first = member_file_n_quantities() - N_COMPUTED;
+    double pair[2];
+    if (!netcdf_has(&reading->reader, name) || !netcdf_has(&reading->reader, error)) return STATUS_OK;
+    const struct netcdf_slice slice[] = {{"multiplier", 0, 1}, {"xy", 0, 2}, {NULL}};
+    TRY(netcdf_read_doubles(&reading->reader, name, slice, pair));
+    *member_file_place(reading->member, first + MULTIPLIER_SIZE, 0, 0) = hypot(pair[0], pair[1]);
+    const struct netcdf_slice one[] = {{"multiplier", 0, 1}, {NULL}};
+    return netcdf_read_doubles(&reading->reader, error, one,
+                               member_file_place(reading->member, first + MULTIPLIER_ERROR, 0, 0));
+}
+
 /* Read attributes and values of an open file. scratch: memory until the file is closed. */
 static enum status read_member(struct arena *arena, struct arena *scratch, struct reading *reading) {
     struct member_file *const member = reading->member;
@@ -250,7 +275,8 @@ static enum status read_member(struct arena *arena, struct arena *scratch, struc
     }
 
     for (int f = 0; f < member->n_fish; f++) TRY(compute_fish(reading, f));
-    return compute_beat_time(reading);
+    TRY(compute_beat_time(reading));
+    return compute_multiplier(reading);
 }
 
 enum status member_file_read(struct arena *arena, struct member_file *member, const char *path) {

@@ -658,6 +658,9 @@ static void print_value(const struct error_study *study, int q, int f, FILE *str
         } else if (study->relation == ERROR_VALUE && fabs(value) > 0) {
             fprintf(stream, " (%.2g %%)", 100 * error / fabs(value));
         }
+        if (study->relation == ERROR_VALUE && strcmp(quantity_of(study, q)->name, "steady_multiplier") == 0) {
+            fprintf(stream, ": %s", value + error < 1 ? "stable" : value - error > 1 ? "unstable" : "undecided");
+        }
 
         // numerical keys that could not be varied: ", without nodes, lifetime"
         int n_missing = 0;
