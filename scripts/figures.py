@@ -169,6 +169,7 @@ FIGURES = {
     "real_time": ["scripts/measure/performance.py --picture real_time.png"],
     "keep_together": ["doc/examples/keep_together.py --figure keep_together.png"],
     "hold_place": ["doc/examples/hold_place.py --figure hold_place.png"],
+    "estimate": ["doc/examples/estimate.py --figure estimate.png"],
 }
 # paths in doc/figures without their ending
 TABLE = {**FIGURES, **{f"gallery/{name}": commands for _, _, some in CHAPTERS for name, _, commands in some}}

@@ -1337,6 +1337,29 @@ class Examples(unittest.TestCase):
         self.assertGreater(abs(away[0][-1]), 1)
         self.assertLess(abs(away[1][-1]), 0.1)
 
+    def test_the_smoother_of_a_linear_model_is_that_of_bayes(self):
+        estimate = example("estimate")
+        random = np.random.default_rng(5)
+        model = random.standard_normal((12, 4)) * np.array([12, 20, 2, 2])
+        truth = estimate.MEAN + estimate.DEVIATION * random.standard_normal(4)
+        data = model @ truth + estimate.NOISE * random.standard_normal(12)
+        ensemble = estimate.smooth(lambda schools: schools @ model.T, data, random, 4000)[-1]
+        inverse = np.diag(estimate.DEVIATION**-2) + model.T @ model / estimate.NOISE**2
+        mean = np.linalg.solve(inverse, estimate.MEAN / estimate.DEVIATION**2 + model.T @ data / estimate.NOISE**2)
+        spread = np.linalg.inv(inverse).diagonal() ** 0.5
+        # the data tell something, and the errors of 4000 members are 1/63 and 1/89 of the deviation
+        self.assertTrue(np.all(spread < 0.7 * estimate.DEVIATION), spread)
+        np.testing.assert_allclose((ensemble.mean(axis=0) - mean) / spread, 0, atol=0.08)
+        np.testing.assert_allclose(ensemble.std(axis=0) / spread, 1, atol=0.06)
+
+    def test_a_follower_finds_its_leader(self):
+        estimate = example("estimate")
+        estimate.BEATS = 3
+        truth, ensembles = estimate.twin(0, 1, lambda schools: [estimate.measured(one) for one in schools], 12)
+        before, after = (estimate.errors(ensemble, truth) for ensemble in ensembles[[0, -1]])
+        self.assertTrue(np.all(after.std(axis=0) < 0.5 * before.std(axis=0)), (before.std(axis=0), after.std(axis=0)))
+        estimate.draw("estimate.png", [(truth, ensembles)])
+
     def test_the_best_gait_is_found_and_compared(self):
         best_gait = example("best_gait")
         best_gait.main({**SWIMMER, "name": "gait"}, 0.8, None, {"wave.amplitude": (0.15, 0.6)}, models=False)
