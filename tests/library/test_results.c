@@ -616,8 +616,8 @@ static const char *const assignments[] = {
 };
 enum { N_ASSIGNMENTS = sizeof assignments / sizeof *assignments, MAX_ASSIGNED = 6 };
 
-/* Keys without influence on two intervals: files, limits and machines, steady states, what only a program uses, and the law
- * that holds a place, which begins after a beat (tests/control/test_control.c). */
+/* Keys without influence on two intervals: files, limits and machines, steady states, what only a program uses, and
+ * the law that holds a place, which begins after a beat (tests/control/test_control.c). */
 static const char keys_elsewhere[] =
     " format name include time.end time.output_interval time.checkpoint_interval time.checkpoint_wall wake.tolerance "
     "wake.spare_vortices solver.rtol solver.order solver.error_test solver.coupling_distance solver.linear "
