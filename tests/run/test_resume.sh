@@ -76,7 +76,7 @@ stopped() {  # name, signals, arguments of run...
     run run "$@" -q -o reference.nc --checkpoint-at "$(places run.nc)"
     check "$name: the bits of the run with the same checkpoints" same run.nc reference.nc
 }
-stopped sheet 'TERM HUP' swimmer.yaml
+stopped sheet 'TERM HUP' swimmer.yaml --set time.end=4
 stopped two_threads USR1 swimmer.yaml --threads 2 --set output.precision=single
 stopped impulsive INT swimmer.yaml --set wake.shedding=impulsive --set time.shedding_interval=0.02
 stopped finite_span TERM swimmer.yaml --set 'fish[*].force=pressure' --set 'fish[*].pressure.span=finite'
