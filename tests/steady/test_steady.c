@@ -228,9 +228,9 @@ TEST(scales_are_lengths_and_beats) {
     struct steady_setup setup;
     steady_setup_open(&setup, COARSE "fish: [{" FISH ", length: 0.6}]\n");
     setup.problem.map.period = 0.8;
-    const double want[] = {
-        [STEADY_SPEED] = 0.6 / 0.8, [STEADY_SLIP] = 0.6 / 0.8, [STEADY_TURN] = 1 / 0.8,   [STEADY_HEADING] = 1,
-        [STEADY_AHEAD] = 0.6,       [STEADY_ASIDE] = 0.6,      [STEADY_SHED] = 0.36 / 0.8};
+    const double want[] = {[STEADY_SPEED] = 0.6 / 0.8, [STEADY_SLIP] = 0.6 / 0.8, [STEADY_TURN] = 1 / 0.8,
+                           [STEADY_HEADING] = 1,       [STEADY_AHEAD] = 0.6,      [STEADY_ASIDE] = 0.6,
+                           [STEADY_SHED] = 0.36 / 0.8, [STEADY_HOLD_ALONG] = 1,   [STEADY_HOLD_ACROSS] = 1};
     for (int i = 0; i < (int)(sizeof want / sizeof *want); i++) {
         const struct steady_unknown unknown = {0, (enum steady_quantity)i};
         NEAR(steady_map_scale(&setup.problem.map, unknown), want[i], 0, 1e-15);
