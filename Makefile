@@ -225,6 +225,7 @@ docs: $(generated_docs)  ## write cases.md, output.md and case.schema.json in do
 numbers: deps  ## list output and tables of README.md and doc/*.md that differ from the program (an hour); WRITE=1: replace
 	@$(parallel) all
 	@code=0; scripts/documents.py $(if $(WRITE),--write) README.md doc/*.md || code=1; \
+	scripts/notebook.py $(if $(WRITE),,--check) || code=1; \
 	for script in $(filter-out %/tables.py,$(wildcard scripts/measure/*.py)); do \
 	    $$script $(if $(WRITE),--write,--compare) || code=1; \
 	done; exit $$code

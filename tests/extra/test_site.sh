@@ -47,6 +47,7 @@ the_notebook_ran() {
     has "$html/notebook.html" "steady_lift of foil: 0.2434" && has "$html/notebook.html" "<iframe srcdoc" && ! grep -n Traceback "$html/notebook.html"
 }
 check the_notebook_shows_a_run_a_movie_and_an_error_bar the_notebook_ran
+check the_notebook_has_the_outputs_of_its_cells "$root/scripts/notebook.py" --check
 no_path_of_the_machine() { ! grep -rlE 'src="file:|href="file:' "$html" --include='*.html'; }
 check no_page_loads_a_file_of_the_machine no_path_of_the_machine
 # a page opens in a browser with an empty console
