@@ -320,27 +320,28 @@ static struct result_file *result_allocate(struct arena *parent, const struct re
 enum status result_file_create(struct arena *arena, struct result_file **result, const struct result_origin *origin) {
     *result = NULL;
     TRY(target_check(origin->path, TARGET_NETCDF, origin->overwrite));
-    struct result_file *const new = result_allocate(arena, origin);
-    enum status status = netcdf_create(&new->writer, origin->path, origin->values->name, origin->command);
+    struct result_file *const file = result_allocate(arena, origin);
+    enum status status = netcdf_create(&file->writer, origin->path, origin->values->name, origin->command);
 
     if (status == STATUS_OK) {
         // the dimensions and the variables
-        struct netcdf_writer *const writer = &new->writer;
+        struct netcdf_writer *const writer = &file->writer;
         int dimension_number[RESULT_N_DIMENSIONS] = {0};
         for (enum result_dimension d = TIME; d < RESULT_N_DIMENSIONS; d++) {
-            if (((d == MULTIPLIER || d == SLOW) && !new->is_steady) || (d != TIME && new->length[d] == 0)) continue;
+            if (((d == MULTIPLIER || d == SLOW) && !file->is_steady) || (d != TIME && file->length[d] == 0)) continue;
             dimension_number[d] =
-                netcdf_define_dimension(writer, result_table_dimension(d), d == TIME ? 0 : new->length[d]);
+                netcdf_define_dimension(writer, result_table_dimension(d), d == TIME ? 0 : file->length[d]);
         }
         for (int i = 0; i < result_table_n; i++) {
-            if (!file_is_written(new, &result_table[i])) continue;
-            file_define_variable(new, i, dimension_number, origin->values->output.precision);
+            if (!file_is_written(file, &result_table[i])) continue;
+            file_define_variable(file, i, dimension_number, origin->values->output.precision);
         }
 
         // the attributes; the text of the case makes a result repeatable
         const struct case_values *const values = origin->values;
         netcdf_write_integer(writer, NETCDF_GLOBAL, "shoal_schema", RESULT_SCHEMA);
-        for (int i = 0; i < N_NOTES; i++) result_file_note(new, (enum result_note)i, i == RESULT_STATUS ? running : "");
+        for (int i = 0; i < N_NOTES; i++)
+            result_file_note(file, (enum result_note)i, i == RESULT_STATUS ? running : "");
         netcdf_write_string(writer, NETCDF_GLOBAL, "case_text", values->text);
         if (values->study) {
             netcdf_write_string(writer, NETCDF_GLOBAL, "study_case", values->study);
@@ -351,17 +352,17 @@ enum status result_file_create(struct arena *arena, struct result_file **result,
         netcdf_end_definitions(writer);
 
         // the constants
-        write_variables(new, CONSTANTS, &(struct result_row){.school = origin->school});
-        netcdf_sync(&new->writer, true);
-        const int code = new->writer.code;
+        write_variables(file, CONSTANTS, &(struct result_row){.school = origin->school});
+        netcdf_sync(&file->writer, true);
+        const int code = file->writer.code;
         if (code != 0) status = target_failed(origin->path, code, netcdf_reason(code));
     }
-    if (status == STATUS_OK && origin->source) status = copy_rows(new, origin->source);
+    if (status == STATUS_OK && origin->source) status = copy_rows(file, origin->source);
 
     if (status == STATUS_OK) {
-        *result = new;
+        *result = file;
     } else {
-        arena_free(new->arena);
+        arena_free(file->arena);
     }
     return status;
 }
@@ -385,27 +386,27 @@ enum status result_file_continue(struct arena *arena, struct result_file **resul
     TRY(netcdf_patch(origin->path, notes[RESULT_STATUS].name, sizeof running, running));
     TRY(netcdf_cut_rows(origin->path, &rows, (uint64_t)mark->n_rows));
 
-    struct result_file *const new = result_allocate(arena, origin);
-    new->n_rows = (size_t)mark->n_rows;
-    new->checksum = *origin->checksum;
-    enum status status = netcdf_continue(&new->writer, origin->path);
+    struct result_file *const file = result_allocate(arena, origin);
+    file->n_rows = (size_t)mark->n_rows;
+    file->checksum = *origin->checksum;
+    enum status status = netcdf_continue(&file->writer, origin->path);
 
     if (status == STATUS_OK) {
         for (int i = 0; i < result_table_n; i++) {
-            if (!file_is_written(new, &result_table[i])) continue;
-            new->number[i] = netcdf_number(&new->writer, result_table[i].name);
+            if (!file_is_written(file, &result_table[i])) continue;
+            file->number[i] = netcdf_number(&file->writer, result_table[i].name);
         }
-        const int code = new->writer.code;
+        const int code = file->writer.code;
         if (code != 0) {
-            netcdf_finish(&new->writer);
+            netcdf_finish(&file->writer);
             status = status_fail(STATUS_FILE, "%s: cannot be continued: %s", origin->path, netcdf_reason(code));
         }
     }
 
     if (status == STATUS_OK) {
-        *result = new;
+        *result = file;
     } else {
-        arena_free(new->arena);
+        arena_free(file->arena);
     }
     return status;
 }

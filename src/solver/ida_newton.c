@@ -265,16 +265,16 @@ SUNNonlinearSolver ida_newton_create(struct sundials_context *context, const str
     newton->correction = sundials_context_vector(context, NULL);
     for (int i = 0; i < N_PAST; i++) newton->past[i] = sundials_context_vector(context, NULL);
 
-    const SUNNonlinearSolver new =
+    const SUNNonlinearSolver solver =
         sundials_context_own(context, OWNED_CUSTOM_NEWTON, SUNNonlinSolNewEmpty(context->context));
-    new->content = newton;
-    new->ops->gettype = newton_type;
-    new->ops->initialize = newton_initialize;
-    new->ops->solve = newton_solve;
-    new->ops->setsysfn = newton_set_residual;
-    new->ops->setlsetupfn = newton_set_set_up;
-    new->ops->setlsolvefn = newton_set_solve;
-    new->ops->getnumiters = newton_iterations;
-    new->ops->getnumconvfails = newton_failures;
-    return new;
+    solver->content = newton;
+    solver->ops->gettype = newton_type;
+    solver->ops->initialize = newton_initialize;
+    solver->ops->solve = newton_solve;
+    solver->ops->setsysfn = newton_set_residual;
+    solver->ops->setlsetupfn = newton_set_set_up;
+    solver->ops->setlsolvefn = newton_set_solve;
+    solver->ops->getnumiters = newton_iterations;
+    solver->ops->getnumconvfails = newton_failures;
+    return solver;
 }

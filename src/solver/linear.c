@@ -437,15 +437,15 @@ static int solver_solve(SUNLinearSolver solver, SUNMatrix matrix, N_Vector x, N_
 
 struct linear_sundials linear_sundials_create(struct sundials_context *context, const struct jacobian *jacobian,
                                               const double *scale, struct linear_tolerance tolerance) {
-    struct linear_sundials new = {.linear = linear_create(context->arena, jacobian, scale, tolerance)};
-    new.linear->of_callback = context->failure;
-    new.matrix = sundials_context_own(context, OWNED_MATRIX, SUNMatNewEmpty(context->context));
-    new.solver = sundials_context_own(context, OWNED_CUSTOM_LINEAR, SUNLinSolNewEmpty(context->context));
-    new.matrix->ops->getid = matrix_id;
-    new.matrix->ops->zero = matrix_zero;
-    new.solver->content = new.linear;
-    new.solver->ops->gettype = solver_type;
-    new.solver->ops->setup = solver_setup;
-    new.solver->ops->solve = solver_solve;
-    return new;
+    struct linear_sundials made = {.linear = linear_create(context->arena, jacobian, scale, tolerance)};
+    made.linear->of_callback = context->failure;
+    made.matrix = sundials_context_own(context, OWNED_MATRIX, SUNMatNewEmpty(context->context));
+    made.solver = sundials_context_own(context, OWNED_CUSTOM_LINEAR, SUNLinSolNewEmpty(context->context));
+    made.matrix->ops->getid = matrix_id;
+    made.matrix->ops->zero = matrix_zero;
+    made.solver->content = made.linear;
+    made.solver->ops->gettype = solver_type;
+    made.solver->ops->setup = solver_setup;
+    made.solver->ops->solve = solver_solve;
+    return made;
 }

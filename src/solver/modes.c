@@ -387,14 +387,14 @@ static enum status modes_find_all(const struct modes *modes, int n_most, struct 
         if (!found || !is_resolved(modes, candidates[c].lambda, 1)) continue;
 
         // insert the mode, sorted by falling rate, unless the list contains it
-        const struct mode new = {creal(candidates[c].lambda), cimag(candidates[c].lambda)};
-        const double size = same * hypot(new.rate, new.omega);
-        bool is_known = *n == n_most && mode[n_most - 1].rate >= new.rate;
-        for (int i = 0; i < *n; i++) is_known |= hypot(mode[i].rate - new.rate, mode[i].omega - new.omega) <= size;
+        const struct mode next = {creal(candidates[c].lambda), cimag(candidates[c].lambda)};
+        const double size = same * hypot(next.rate, next.omega);
+        bool is_known = *n == n_most && mode[n_most - 1].rate >= next.rate;
+        for (int i = 0; i < *n; i++) is_known |= hypot(mode[i].rate - next.rate, mode[i].omega - next.omega) <= size;
         if (is_known) continue;
         int i = *n < n_most ? (*n)++ : n_most - 1;
-        for (; i > 0 && mode[i - 1].rate < new.rate; i--) mode[i] = mode[i - 1];
-        mode[i] = new;
+        for (; i > 0 && mode[i - 1].rate < next.rate; i--) mode[i] = mode[i - 1];
+        mode[i] = next;
     }
     return STATUS_OK;
 }

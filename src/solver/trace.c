@@ -20,23 +20,23 @@ static void release_trace(void *object) {
     if (trace->file) fclose(trace->file);
 }
 
-enum status trace_create(struct arena *arena, struct trace **trace, const char *path, bool overwrite) {
-    struct trace *new;
-    NEW(arena, new, 1);
-    new->path = arena_text(arena, "%s", path);
-    new->file = fopen(path, overwrite ? "w" : "wx");
-    if (!new->file) {
+enum status trace_create(struct arena *arena, struct trace **created, const char *path, bool overwrite) {
+    struct trace *trace;
+    NEW(arena, trace, 1);
+    trace->path = arena_text(arena, "%s", path);
+    trace->file = fopen(path, overwrite ? "w" : "wx");
+    if (!trace->file) {
         return errno == EEXIST ? status_fail(STATUS_FILE, "--trace %s: the file exists: replace it with --force", path)
                                : status_fail(STATUS_FILE, "--trace %s: %s", path, strerror(errno));
     }
-    arena_defer(arena, release_trace, new);
+    arena_defer(arena, release_trace, trace);
     fputs(
         "event,t,step,order,result,iterations,jacobians,age,cj_ratio,gmres,norms,differential_norms,rates,"
         "unknown,fish,correction\n",
-        new->file);
+        trace->file);
     // write whole lines, so that the file of a run that ends early can be read
-    setvbuf(new->file, NULL, _IOLBF, BUFSIZ);
-    *trace = new;
+    setvbuf(trace->file, NULL, _IOLBF, BUFSIZ);
+    *created = trace;
     return STATUS_OK;
 }
 

@@ -200,13 +200,13 @@ static enum status field_read_row(struct arena *arena, struct reading *reading, 
     return STATUS_OK;
 }
 
-enum status field_row_read(struct arena *arena, struct field_row **new, const char *path, double t, int n_assignments,
-                           const char *const *assignments) {
+enum status field_row_read(struct arena *arena, struct field_row **created, const char *path, double t,
+                           int n_assignments, const char *const *assignments) {
     struct arena *const scratch = arena_create(arena, path);
     struct reading *reading;
     struct field_row *row;
     NEW(arena, row, 1);
-    *new = row;
+    *created = row;
     NEW(scratch, reading, 1);
     TRY(netcdf_open(scratch, &reading->file, path));
 
