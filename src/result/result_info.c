@@ -474,7 +474,7 @@ enum status result_json_steady(const struct netcdf_reader *reader, FILE *stream)
 
         // omit unused multipliers
         const bool of_multipliers = variable->dimension[0] == MULTIPLIER;
-        const size_t stride = size / slice[0].n;
+        const size_t stride = of_multipliers ? size / slice[0].n : 0;  // a scalar has no slice
         while (of_multipliers && slice[0].n > 0) {
             size_t n_numbers = 0;
             for (size_t k = 0; k < stride; k++) {
