@@ -16,11 +16,13 @@ check a_thousand_results timeout "$time_limit" "$targets/fuzz_result" 1000 1 see
 check a_thousand_checkpoints timeout "$time_limit" "$targets/fuzz_checkpoint" 1000 1 seeds/checkpoints/*
 
 # scripts/fuzz.sh recognises libFuzzer by a help text of any length: always the same answer
-mkdir -p tree/scripts tree/tests/fuzz tree/build/fuzz
+mkdir -p tree/scripts tree/tests/fuzz tree/build-sanitize/fuzz
+ln -s build-sanitize tree/build-fuzzer
+printf 'fuzz-programs:\n' >tree/Makefile
 cp "$root/scripts/fuzz.sh" tree/scripts
 printf '#!/bin/sh\nmkdir -p "$2"\n' >tree/tests/fuzz/seeds.sh
 for target in fuzz_case fuzz_result fuzz_checkpoint; do
-    cat >tree/build/fuzz/$target <<'end'
+    cat >tree/build-sanitize/fuzz/$target <<'end'
 #!/bin/sh
 case $1 in
     -help=1) echo "Usage of libFuzzer:" && seq 100000 ;;
@@ -29,9 +31,9 @@ case $1 in
 esac
 end
 done
-chmod +x tree/tests/fuzz/seeds.sh tree/build/fuzz/*
+chmod +x tree/tests/fuzz/seeds.sh tree/build-sanitize/fuzz/*
 : >answers
-for ((i = 0; i < 10; i++)); do tree/scripts/fuzz.sh tree/build 1 >>answers 2>&1; done
+for ((i = 0; i < 10; i++)); do tree/scripts/fuzz.sh 1 >>answers 2>&1; done
 check the_fuzzer_is_recognised_thirty_times_of_thirty test "$(grep -c ': 7 inputs in 1 s$' answers)" = 30
 
 finish

@@ -28,7 +28,8 @@ done
 shown() { GROFF_NO_SGR=1 man --warnings -E UTF-8 -l "$1" 2>errors | col -b >"$1.txt" && [[ ! -s errors ]]; }
 check_with man man_shows_the_page shown shoal.1
 check_with man with_commands_and_options grep -qE -- '--members A-B' shoal.1.txt
-check_with man with_exit_codes grep -qE '^ +75 +stopped by a signal' shoal.1.txt
+# man justifies lines with blanks
+check_with man with_exit_codes grep -qE '^ +75 +stopped +by +a +signal' shoal.1.txt
 check every_command_is_there test "$(grep -c '^\.SS' shoal.1)" = "$("$program" --help | grep -E "^  [a-z]" | grep -cv "^  shoal")"
 check every_key_is_there test "$(grep -cE '^\.TP' shoal-case.5)" = "$(grep -c '"path"' keys.json)"
 check every_variable_is_there test "$(grep -cE '^\.TP' shoal-output.5)" = "$(grep -c '"name"' variables.json)"
