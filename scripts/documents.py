@@ -59,12 +59,12 @@ def blocks_of(document):
 # ---- comparison of lines
 
 
-def is_near(shown, printed, is_rough):
-    """Whether two numbers as texts agree."""
+def is_near(shown, printed, is_rough, is_bar=False):
+    """Whether two numbers as texts agree; is_bar: of an error bar."""
     if shown == printed:
         return True
     a, b = float(shown), float(printed)
-    if 0 < abs(a) < 1e-6 or is_rough and "e" in shown and a != 0:  # errors
+    if 0 < abs(a) < 1e-6 or is_rough and a != 0 and ("e" in shown or is_bar):  # errors
         return 1 / 3 <= b / a <= 3
     if shown.lstrip("+-").isdigit():
         return abs(a - b) <= (0.2 * abs(a) if is_rough and abs(a) > 9 else 0.02 * abs(a) if abs(a) > 99 else 0)
@@ -78,7 +78,9 @@ def is_same_line(shown, printed, is_rough=False):
     shown, printed = (re.sub(r"CPU x [\d.]+", "CPU x", re.sub(r", CPU x [\d.]+", "", " ".join(line.split()))) for line in (shown, printed))
     words = [".*".join(map(re.escape, part.split("..."))) for part in NUMBER.split(shown)]
     found = re.fullmatch(f"({NUMBER.pattern})".join(words), printed)
-    return found is not None and all(is_near(a, b, is_rough) for a, b in zip(NUMBER.findall(shown), found.groups()))
+    before = NUMBER.split(shown)
+    return found is not None and all(is_near(a, b, is_rough, text.endswith("+- "))
+                                     for text, a, b in zip(before, NUMBER.findall(shown), found.groups()))
 
 
 def without_times(lines):
