@@ -235,6 +235,7 @@ UNSET = [
     ("wake.spare_vortices", "a program that adds vortices or moves fish between steps (doc/python.md)"),
     ("wake.vortices", "who lets a fish meet a vortex of given strength"),
     ("wake.street.row_distance", "who wants a vortex street other than von Karman's"),
+    ("wake.leg_length", "`shoal error --models`, which halves and doubles it (doc/studies.md)"),
     ("contact.action, contact.range",
      "who wants to see whether contact decides a result: `warn` or `stop`, or another range"),
     ("solver.threads", "who has a school of ten fish or more; `--threads` sets it for one run"),
@@ -255,7 +256,8 @@ UNSET = [
     ("fish.added_mass.extent", "who repeats computations of the article: `thickness`"),
     ("fish.load.tip", "who tows a fish, or loads a body at rest to measure its stiffness"),
     ("fish.control.acceptance_radius, fish.control.slow, fish.control.course_filter, fish.control.limit, "
-     "fish.control.rate", "who designs a controller: each is a parameter of its law (doc/model.md, section 11)"),
+     "fish.control.rate, fish.control.amplitude_gain, fish.control.amplitude_damping, fish.control.amplitude_limit, "
+     "fish.control.lookahead, fish.control.hold_time", "who designs a controller: each is a parameter of its law (doc/model.md, section 11)"),
     ("fish.control.feedforward, fish.control.filter",
      "who compares control with and without the feedforward of the article"),
     ("fish.control.ramp", "a program that changes the beat or the bias between steps (doc/python.md)"),
