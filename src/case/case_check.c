@@ -31,6 +31,8 @@ struct check {
     struct yaml_errors *errors;
     const struct fish_parameters *fish;
     int index;
+    const struct fish_parameters **named; /* the fish with a name, in the order of the names             (n_named) */
+    int n_named;
     bool is_of_notes; /* skip a note on a value that another fish shares */
 };
 
@@ -568,19 +570,23 @@ static const struct {
                 {"fish.control.lookahead", 1U << CONTROL_PLACE},
                 {"fish.control.hold_time", 1U << CONTROL_PLACE}};
 
+static int by_name_of(const void *name, const void *fish) {
+    return strcmp(name, (*(const struct fish_parameters *const *)fish)->name);
+}
+
 // the fish whose place the law of fish f counts from; -1: none of this name
-static int find_leader(const struct school_parameters *school, int f) {
-    for (int g = 0; g < school->n_fish; g++) {
-        if (school->fish[g].name && strcmp(school->fish[g].name, school->fish[f].control.of) == 0) return g;
-    }
-    return -1;
+static int find_leader(const struct check *check, int f) {
+    const struct fish_parameters *const fish = check->values->school.fish;
+    const struct fish_parameters **const found =
+        bsearch(fish[f].control.of, check->named, (size_t)check->n_named, sizeof *check->named, by_name_of);
+    return found ? (int)(*found - fish) : -1;
 }
 
 // the leader of law place: another fish that does not follow this one
 static void check_law_place(const struct check *check) {
     const struct school_parameters *const school = &check->values->school;
     const struct control_parameters *const control = &check->fish->control;
-    const int f = check->index, leader = control->of ? find_leader(school, f) : -1;
+    const int f = check->index, leader = control->of ? find_leader(check, f) : -1;
     static const char path[] = "fish.control.of";
     complain_if(control->waypoints.n > 0, check, "fish.control.waypoints",
                 "has no effect with 'law: place': remove the waypoints, or choose course");
@@ -596,7 +602,7 @@ static void check_law_place(const struct check *check) {
     int last = leader, n = 0;
     while (last >= 0 && last != f && n++ < school->n_fish) {
         const struct control_parameters *const next = &school->fish[last].control;
-        last = next->law == CONTROL_PLACE && next->of ? find_leader(school, last) : -1;
+        last = next->law == CONTROL_PLACE && next->of ? find_leader(check, last) : -1;
     }
     complain_if(leader >= 0 && leader != f && last == f, check, path,
                 "'%.60s' holds a place beside this fish in turn: let one of them lead", control->of);
@@ -720,19 +726,18 @@ void case_check(const struct case_values *values, const struct case_tree *tree, 
     complain_if(values->name && strchr(values->name, '/'), &check, "name", "cannot contain a '/'");
 
     // refuse a name that an earlier fish has; in the order of the names, fish of one name are neighbours
-    const struct fish_parameters **sorted;
-    int n = 0, first = 0;
-    NEW(tree->arena, sorted, school->n_fish);
+    int first = 0;
+    NEW(tree->arena, check.named, school->n_fish);
     for (int f = 0; f < school->n_fish; f++) {
-        if (school->fish[f].name) sorted[n++] = &school->fish[f];
+        if (school->fish[f].name) check.named[check.n_named++] = &school->fish[f];
     }
-    qsort(sorted, (size_t)n, sizeof *sorted, by_name);
-    for (int i = 1; i < n; i++) {
-        const bool is_same = strcmp(sorted[first]->name, sorted[i]->name) == 0;
+    qsort(check.named, (size_t)check.n_named, sizeof *check.named, by_name);
+    for (int i = 1; i < check.n_named; i++) {
+        const bool is_same = strcmp(check.named[first]->name, check.named[i]->name) == 0;
         if (!is_same) first = i;
-        check.index = (int)(sorted[i] - school->fish);
+        check.index = (int)(check.named[i] - school->fish);
         complain_if(is_same, &check, "fish.name", "fish[%d] has the same name, '%.60s'; names must be unique",
-                    (int)(sorted[first] - school->fish), sorted[i]->name);
+                    (int)(check.named[first] - school->fish), check.named[i]->name);
     }
 
     // the fish with the extreme beat decides the derived times of the school

@@ -227,14 +227,14 @@ static void put_at(struct arena *arena, struct yaml_node **node, const char *pat
     put_at(arena, &yaml_tree_entry(*node, key, length)->value, path + length + 1, mark, value);
 }
 
-// the names of the fish; a fish without a name has the one that it gets when its keys are read
+// the names of the fish
 static const char *const *fish_names(const struct case_tree *tree) {
     const struct yaml_node *const school = yaml_tree_find(tree->root, "fish");
     const char **name;
     NEW(tree->arena, name, case_merge_n_fish(tree));
     for (int f = 0; f < case_merge_n_fish(tree); f++) {
         const struct yaml_node *const own = yaml_tree_find(school->entry[f].value, "name");
-        name[f] = own && own->kind == YAML_SCALAR ? own->text : arena_text(tree->arena, "fish%d", f + 1);
+        name[f] = own && own->kind == YAML_SCALAR ? own->text : case_table_fish_name(tree->arena, f);
     }
     return name;
 }
@@ -253,7 +253,8 @@ void case_merge_assign(struct case_tree *tree, const char *assignment, struct ya
     // the key
     *equals = '\0';
     struct case_path path;
-    if (!case_path_parse(&path, name, case_merge_n_fish(tree), fish_names(tree), mark, errors)) return;
+    const char *const *const names = case_path_has_name(name) ? fish_names(tree) : NULL;
+    if (!case_path_parse(&path, name, case_merge_n_fish(tree), names, mark, errors)) return;
     const struct key *const key = case_table_row(path.pattern);
     if (key && key->type == FILES) {
         yaml_errors_add(errors, mark, "%s: is allowed in case files only", name);

@@ -161,12 +161,21 @@ void case_path_unknown(struct yaml_errors *errors, struct yaml_mark mark, const 
 
 // ---- paths
 
+bool case_path_has_name(const char *text) {
+    if (strncmp(text, "fish[", 5) != 0 || strncmp(text, "fish[*]", 7) == 0) return false;
+    const size_t n_digits = strspn(text + 5, "0123456789");
+    return n_digits == 0 || text[5 + n_digits] != ']';
+}
+
 /* Find the fish of a name; CASE_NO_FISH after adding an error that suggests the nearest name. */
 static int fish_of_name(const char *text, size_t length, int n_fish, const char *const *name, struct yaml_mark mark,
                         struct yaml_errors *errors) {
-    int nearest = 0, least = INT_MAX;
     for (int f = 0; f < n_fish; f++) {
         if (strlen(name[f]) == length && strncmp(text, name[f], length) == 0) return f;
+    }
+
+    int nearest = 0, least = INT_MAX;
+    for (int f = 0; f < n_fish; f++) {
         const int distance = text_distance(text, length, name[f], strlen(name[f]));
         if (distance < least) {
             least = distance;

@@ -15,8 +15,11 @@ struct case_path {
     const char *below; /* "wave.frequency": points into the text that was parsed */
 };
 
-/* Parse a path and check the existence of the key; false after adding an error. name (n_fish): the names of the fish,
- * by which a path may address them, as in fish[leader].wave.frequency. */
+/* Whether a path addresses a fish by its name, so that case_path_parse needs the names. */
+bool case_path_has_name(const char *text);
+
+/* Parse a path and check the existence of the key; false after adding an error. name: the names of the fish, by
+ * which a path may address them, as in fish[leader].wave.frequency; NULL without a name in the path.    (n_fish) */
 bool case_path_parse(struct case_path *path, const char *text, int n_fish, const char *const *name,
                      struct yaml_mark mark, struct yaml_errors *errors);
 

@@ -114,11 +114,15 @@ static void derive_wake(const struct key_place *at) {
     if (street->n > 0) set_default(&street->row_distance, acosh(sqrt(2)) / M_PI * street->spacing);
 }
 
+char *case_table_fish_name(struct arena *arena, int f) {
+    return arena_text(arena, "fish%d", f + 1);
+}
+
 /* Set the defaults of a fish that follow from other keys. */
 static void derive_fish(const struct key_place *at) {
     const struct school_parameters *const school = &at->values->school;
     struct fish_parameters *const fish = at->fish;
-    if (!fish->name) fish->name = arena_text(at->values->arena, "fish%d", (int)(fish - school->fish) + 1);
+    if (!fish->name) fish->name = case_table_fish_name(at->values->arena, (int)(fish - school->fish));
 
     // the model of the force, and the points that the span needs
     const bool is_possible = school->wake.shedding == SHEDDING_SHEET && school->sheet.curve == BODY_LINE_SMOOTH;

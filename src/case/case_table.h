@@ -106,4 +106,7 @@ const char *case_table_word(const struct key *key, int i);
 const char *case_table_type(const struct key *key);
 void case_table_range(const struct key *key, struct text *range);
 
+/* The name of fish f if the case gives it none. */
+char *case_table_fish_name(struct arena *arena, int f);
+
 #endif

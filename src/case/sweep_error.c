@@ -188,15 +188,8 @@ static void read_against(const struct case_values *values, struct sweep_error *e
     const char *const equals = strchr(error->against, '=');
     if (node->kind == YAML_SCALAR && equals) {
         error->against_kind = AGAINST_FISH;
-        bool is_known[2] = {false, false};
-        for (int f = 0; f < values->school.n_fish; f++) {
-            const char *const name = values->school.fish[f].name;
-            if (!name) continue;
-            const size_t n = strlen(name);
-            is_known[0] |= n == (size_t)(equals - error->against) && strncmp(error->against, name, n) == 0;
-            is_known[1] |= strcmp(equals + 1, name) == 0;
-        }
-        if (is_known[0] && is_known[1]) return;
+        const int first = school_find_fish(&values->school, error->against, (size_t)(equals - error->against));
+        if (first >= 0 && school_find_fish(&values->school, equals + 1, strlen(equals + 1)) >= 0) return;
         yaml_errors_add(errors, node->mark, "error.against: '%.60s': expects the names of two fish of this case",
                         error->against);
     } else if (node->kind == YAML_SCALAR && values->n_axes > 0) {

@@ -117,9 +117,8 @@ static void read_bounds(const struct reading *reading) {
                                                                                 yaml_tree_find(reading->node, "fish");
     yaml_tree_check_keys(reading->node, reading->name, "of, fish, where, least, most, spread, ratio, fails",
                          reading->errors);
-    for (int f = 0; f < reading->values->school.n_fish && fish; f++) {
-        const char *const name = reading->values->school.fish[f].name;
-        if (fish->kind == YAML_SCALAR && name && strcmp(name, fish->text) == 0) into->fish = f;
+    if (fish && fish->kind == YAML_SCALAR) {
+        into->fish = school_find_fish(&reading->values->school, fish->text, strlen(fish->text));
     }
     if (fish && into->fish < 0) {
         yaml_errors_add(reading->errors, fish->mark, "%s.fish: expects the name of a fish", reading->name);

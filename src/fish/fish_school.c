@@ -147,10 +147,7 @@ static void control_set(struct arena *arena, struct fish *fish, const struct fis
     }
 
     // law place; the centre of mass of a straight body lies behind the nose
-    to->leader = -1;
-    for (int g = 0; g < parameters->n_fish && control->law == CONTROL_PLACE; g++) {
-        if (strcmp(parameters->fish[g].name, control->of) == 0) to->leader = g;
-    }
+    to->leader = control->law == CONTROL_PLACE ? school_find_fish(parameters, control->of, strlen(control->of)) : -1;
     to->gains[0] = control->amplitude_gain;
     to->gains[1] = control->amplitude_damping;
     to->amplitude_limit = control->amplitude_limit;

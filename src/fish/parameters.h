@@ -5,6 +5,7 @@
 #define PARAMETERS_H
 
 #include <signal.h>
+#include <string.h>
 
 enum shedding { SHEDDING_CONTINUOUS, SHEDDING_IMPULSIVE, SHEDDING_SHEET };
 enum kutta { KUTTA_EDGE, KUTTA_RATE };
@@ -194,5 +195,14 @@ struct school_parameters {
     struct fish_parameters *fish;      /* (n_fish) */
     const volatile sig_atomic_t *stop; /* the set-up of a school ends once *stop is not 0; may be NULL */
 };
+
+/* The fish with a name, which has so many bytes; -1: none. */
+static inline int school_find_fish(const struct school_parameters *school, const char *name, size_t length) {
+    for (int f = 0; f < school->n_fish; f++) {
+        const char *const own = school->fish[f].name;
+        if (own && strncmp(own, name, length) == 0 && own[length] == '\0') return f;
+    }
+    return -1;
+}
 
 #endif
