@@ -305,15 +305,12 @@ static enum status print_multipliers(const struct netcdf_reader *reader, double 
         fprintf(stream, "\n");
     }
 
-    if (first[0] + first[1] < 1) {
-        fprintf(stream, "  stable");
-    } else if (first[0] - first[1] > 1) {
-        fprintf(stream, "  unstable");
-    } else {
-        fprintf(stream, "  undecided: 1 is within the error of the largest multiplier");
-    }
-    if (!(first[0] - first[1] > 1) && amplification > 1) {
-        fprintf(stream, "; a disturbance may grow by the factor %.2g in %d beats", amplification, 32);
+    const char *const verdict = steady_verdict(first[0], first[1]);
+    fprintf(stream, "  %s", verdict);
+    if (strcmp(verdict, "undecided") == 0) fprintf(stream, ": 1 is within the error of the largest multiplier");
+    if (strcmp(verdict, "unstable") != 0 && amplification > 1) {
+        fprintf(stream, "; a disturbance may grow by the factor %.2g in %d beats", amplification,
+                STEADY_AMPLIFIED_BEATS);
     }
     fprintf(stream, "\n");
     return STATUS_OK;

@@ -15,6 +15,14 @@
  * (steady/steady_map.h). */
 enum { STEADY_QUANTITIES = 8 };
 
+/* Beats over which the growth of a disturbance is sought: steady_amplification. */
+enum { STEADY_AMPLIFIED_BEATS = 32 };
+
+/* Whether a state with this absolute value of the largest multiplier is stable, with the error of the value. */
+static inline const char *steady_verdict(double multiplier, double error) {
+    return multiplier + error < 1 ? "stable" : multiplier - error > 1 ? "unstable" : "undecided";
+}
+
 /* One fish: means over the last beat; without a beat the values at equilibrium. */
 struct steady_fish {
     double speed;      /* of the centre of mass through the water, m s-1 */
@@ -43,7 +51,7 @@ struct steady_values {
     double *multiplier_error; /* of the absolute value                             (n_multipliers) */
     double *mode; /* real and imaginary parts of the slow quantities of each multiplier, over the largest; NaN: not slow
                      (n_multipliers, n_fish, STEADY_QUANTITIES, 2) */
-    double amplification; /* largest growth of the disturbance of one slow quantity within 32 beats; NaN: unknown */
+    double amplification; /* largest growth of the disturbance of one slow quantity; NaN: unknown */
     int n_exponents;      /* of small disturbances, of a pair one: of the multipliers, or without a beat of the modes
                                  of the bodies */
     double *rate, *omega; /* growth rate, s-1, and angular frequency, rad s-1, by falling rate (n_exponents) */

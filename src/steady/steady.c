@@ -181,9 +181,9 @@ static void warn_of_state(struct run *run) {
     const double largest = found->n_multipliers > 0 ? hypot(found->real[0], found->imaginary[0]) : 0;
     const double error = found->n_multipliers > 0 ? found->multiplier_error[0] : 0;
     if (largest > 1) {
+        const bool is_certain = largest - error > 1;
         warn(run, "the steady state %s unstable: a disturbance grows by the factor %.4g +- %.2g a beat (limit 1)%s; %s",
-             largest - error > 1 ? "is" : "may be", largest, error,
-             largest - error > 1 ? ", so that a run leaves it" : "",
+             is_certain ? "is" : "may be", largest, error, is_certain ? ", so that a run leaves it" : "",
              school->n_fish > 1 ? "search from another place, or hold the places by control (control.law: place)"
                                 : "a deeper body, cross-flow drag (drag.normal) or control.law: course stabilises it");
     }

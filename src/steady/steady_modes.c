@@ -115,9 +115,6 @@ static const double disturbance = 0.04, smallest = 0.02, largest = 0.06, shorter
  * the wake of the first fish reaches the last one. SAMPLES: of the errors of the responses. */
 enum { MEMORY = 3, MOST_MEMORY = 12, SAMPLES = 16 };
 
-/* Beats over which the amplification is sought. */
-enum { AMPLIFIED = 32 };
-
 struct disturbances {
     struct steady_problem *problem;
     int n_memory;
@@ -155,8 +152,7 @@ static enum status find_responses(struct disturbances *all) {
             enum status status = follow_disturbance(all, j, size, all->above);
             if (status == STATUS_OK) status = follow_disturbance(all, j, -size, all->below);
             if (status == STATUS_OK) break;
-            if (status == STATUS_STOPPED || status == STATUS_MEMORY || size * shorter < least_disturbance)
-                return status;
+            if (status == STATUS_STOPPED || size * shorter < least_disturbance) return status;
         }
         for (int m = 0; m < all->n_memory; m++) {
             for (int i = 0; i < n; i++) {
@@ -209,11 +205,11 @@ static enum status find_errors(struct arena *arena, const struct disturbances *a
 static double find_amplification(struct arena *arena, const struct disturbances *all) {
     const int n = all->problem->n_unknowns;
     double *x, most = 0;
-    NEW(arena, x, n * (AMPLIFIED + 1));
+    NEW(arena, x, n * (STEADY_AMPLIFIED_BEATS + 1));
     for (int j = 0; j < n; j++) {
-        memset(x, 0, (size_t)n * (AMPLIFIED + 1) * sizeof *x);
+        memset(x, 0, (size_t)n * (STEADY_AMPLIFIED_BEATS + 1) * sizeof *x);
         x[j] = 1;
-        for (int k = 0; k < AMPLIFIED; k++) {
+        for (int k = 0; k < STEADY_AMPLIFIED_BEATS; k++) {
             double *const next = x + n * (k + 1), square = 0;
             for (int m = 0; m < all->n_memory && m <= k; m++) {
                 for (int i = 0; i < n * n; i++) next[i % n] += all->response[i + n * n * m] * x[n * (k - m) + i / n];

@@ -22,8 +22,8 @@ struct steady_multipliers {
     double *error;            /* of the absolute value: noise and size of the differences, memory of the wake  (n) */
     double *mode;             /* real and imaginary parts of the unknowns, over the scales and over the largest
                                     (n multipliers, n unknowns, 2) */
-    double amplification;     /* largest norm of the unknowns, over the scales, within 32 beats after a unit change
-                                    of one unknown */
+    double amplification;     /* largest norm of the unknowns, over the scales, within
+                                 STEADY_AMPLIFIED_BEATS after a unit change of one unknown */
     double *way;              /* step to the fixed point of the linearised map, over the scales of the unknowns (n) */
     int n_beats;              /* simulated */
 };

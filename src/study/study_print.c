@@ -13,6 +13,7 @@
 #include "case/sweep_expect.h"
 #include "case/sweep_quantity.h"
 #include "result/durable.h"
+#include "result/result_row.h"
 #include "result/target.h"
 #include "run/estimate.h"
 #include "run/simulate.h"
@@ -659,7 +660,7 @@ static void print_value(const struct error_study *study, int q, int f, FILE *str
             fprintf(stream, " (%.2g %%)", 100 * error / fabs(value));
         }
         if (study->relation == ERROR_VALUE && strcmp(quantity_of(study, q)->name, "steady_multiplier") == 0) {
-            fprintf(stream, ": %s", value + error < 1 ? "stable" : value - error > 1 ? "unstable" : "undecided");
+            fprintf(stream, ": %s", steady_verdict(value, error));
         }
 
         // numerical keys that could not be varied: ", without nodes, lifetime"
