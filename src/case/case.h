@@ -16,8 +16,8 @@
 
 /* Read the case file at path, apply the n_assignments strings "path=value" in order, check everything and fill *values.
  * Fails with STATUS_FILE (cannot be read) or STATUS_CASE; the message then lists up to 20 errors in the form of a
- * compiler, each with a caret under the place. A case owns an arena and is a boundary of memory: fails with
- * STATUS_MEMORY. After a failure *values owns nothing. Free with case_free. */
+ * compiler, each with a caret under the place. After a failure *values owns nothing. Free with
+ * case_free. */
 enum status case_read(struct case_values *values, const char *path, int n_assignments, const char *const *assignments);
 
 /* Read a case from a string. origin: the name of the string in messages; folder: the folder of includes (NULL or "":
@@ -29,7 +29,7 @@ enum status case_parse(struct case_values *values, const char *text, size_t leng
 void case_free(struct case_values *values);
 
 /* Fill *values with the case of one member of a study: the case of the study with the values of the member assigned as
- * by --set, without a sweep. Fails with STATUS_CASE, naming the member, or with STATUS_MEMORY. Free with case_free. */
+ * by --set, without a sweep. Fails with STATUS_CASE, naming the member. Free with case_free. */
 enum status case_member(struct case_values *values, const struct case_values *study, int member);
 
 /* case_show.c: the complete case with the values of all keys, in an arena, as a case file from which case_read reads

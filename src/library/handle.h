@@ -2,8 +2,8 @@
  * include/shoal.h are in shoal.c (the life of a run, reading, result files), shoal_change.c and shoal_copy.c. Tested by
  * tests/library/test_shoal.c and test_handle.c.
  *
- * Every public function that requests memory is a boundary of memory (base/arena.h), and so is every part that runs
- * under the lock of NetCDF. */
+ * Public functions request memory in parts only, which handle_call runs within the boundary of memory
+ * (base/arena.h). */
 #ifndef HANDLE_H
 #define HANDLE_H
 

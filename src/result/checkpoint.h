@@ -28,7 +28,7 @@ struct checkpoint {
 };
 
 /* Write the checkpoint of a state, as durable_replace does. Of *checkpoint, effective, result, places, rows, totals and
- * wall_time are used. arena: for scratch. Fails with STATUS_FILE or, as a boundary, with STATUS_MEMORY. */
+ * wall_time are used. arena: for scratch. Fails with STATUS_FILE. */
 enum status checkpoint_write(struct arena *arena, const char *path, const char *previous,
                              const struct checkpoint *checkpoint, const struct state *state,
                              const struct school *school);
@@ -40,8 +40,8 @@ enum status checkpoint_read(struct arena *arena, struct checkpoint *checkpoint, 
 /* Fail with STATUS_FILE unless this program, with these libraries, made the checkpoint. */
 enum status checkpoint_check_program(const struct checkpoint *checkpoint);
 
-/* Set a state of the case of the checkpoint. Fails with STATUS_FILE if a section is invalid, or with
- * STATUS_MEMORY; the state can then only be freed. */
+/* Set a state of the case of the checkpoint. Fails with STATUS_FILE if a section is invalid; the state
+ * can then only be freed. */
 enum status checkpoint_set_state(const struct checkpoint *checkpoint, struct state *state, const struct school *school);
 
 /* Fail with STATUS_FILE where another file than a checkpoint of the result of this name is at path. arena: for
@@ -49,7 +49,7 @@ enum status checkpoint_set_state(const struct checkpoint *checkpoint, struct sta
 enum status checkpoint_check_target(struct arena *arena, const char *path, const char *result);
 
 /* Print a summary of a checkpoint in five lines, this and a line for each variable of the state, or only the case in
- * the checkpoint. arena: for scratch. A boundary, for the caller to close the stream. Fails as checkpoint_read. */
+ * the checkpoint. arena: for scratch. Fails as checkpoint_read. */
 enum checkpoint_part { CHECKPOINT_SUMMARY, CHECKPOINT_STATE, CHECKPOINT_CASE };
 enum status checkpoint_info(struct arena *arena, const char *path, enum checkpoint_part part, FILE *stream);
 

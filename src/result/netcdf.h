@@ -121,8 +121,7 @@ struct netcdf_slice {
  * the path must outlive the arena. */
 enum status netcdf_open(struct arena *arena, struct netcdf_reader *reader, const char *path);
 
-/* Open a file, print the contents, close the file. arena: for scratch. A boundary, for the caller to close the
- * stream. Fails as netcdf_open or print. */
+/* Open a file, print the contents, close the file. arena: for scratch. Fails as netcdf_open or print. */
 enum status netcdf_print(struct arena *arena, const char *path,
                          enum status (*print)(const struct netcdf_reader *reader, FILE *stream), FILE *stream);
 

@@ -59,7 +59,7 @@ bool checkpoints_are_due(const struct checkpoints *checkpoints, long event);
 bool checkpoints_are_due_by_wall(const struct checkpoints *checkpoints);
 
 /* Write a checkpoint at the event of the simulation, after the rows of the record are safe on disk. Does nothing if the
- * event already has one. Fails with STATUS_FILE or, as a boundary, with STATUS_MEMORY. */
+ * event already has one. Fails with STATUS_FILE. */
 enum status checkpoints_write(struct checkpoints *checkpoints, const struct simulation *simulation,
                               const struct record *record);
 

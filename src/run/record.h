@@ -23,8 +23,8 @@ struct record {
 char *record_path(struct arena *arena, const struct case_values *values);
 
 /* Create the file of an origin, without rows (result_file_create), or continue it behind the mark of the origin. The
- * record refers to the path until record_close; origin->effective is not used. A boundary: fails with STATUS_FILE or
- * STATUS_MEMORY, and then leaves no new file. */
+ * record refers to the path until record_close; origin->effective is not used. Fails with STATUS_FILE, and then leaves
+ * no new file. */
 enum status record_create(struct arena *arena, struct record *record, const struct result_origin *origin);
 
 /* Whether an event becomes a row: one in every output interval does, and so does the end. A record without a file has

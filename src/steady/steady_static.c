@@ -110,10 +110,6 @@ static void static_set_part(struct growth *growth, double part) {
     }
 }
 
-static bool is_fatal(enum status status) {
-    return status == STATUS_MEMORY || status == STATUS_STOPPED;
-}
-
 // solve at this part of the stream, from the current state; on a failure restore the last solution
 static enum status growth_solve(struct growth *growth, double part) {
     struct simulation *const simulation = growth->simulation;
@@ -144,7 +140,7 @@ static enum status growth_solve(struct growth *growth, double part) {
 
     if (status != STATUS_OK) {
         memcpy(state->y, growth->last, bytes);
-        return is_fatal(status) ? status : STATUS_SOLVER;
+        return status == STATUS_STOPPED ? status : STATUS_SOLVER;
     }
 
     memcpy(growth->last, state->y, bytes);
@@ -219,7 +215,7 @@ static enum status find_solution(struct growth *growth, const char *from, struct
             memcpy(growth->last, state->y, bytes);
             status = growth_solve(growth, 1);
         }
-        if (is_fatal(status)) return status;
+        if (status == STATUS_STOPPED) return status;
         if (status != STATUS_OK) memcpy(growth->last, rest, bytes);
         memcpy(state->y, growth->last, bytes);
     }
@@ -229,7 +225,7 @@ static enum status find_solution(struct growth *growth, const char *from, struct
     char reason[512];
     while (growth->last_part < 1) {
         const enum status status = growth_solve(growth, fmin(1, growth->last_part + step));
-        if (is_fatal(status)) return status;
+        if (status == STATUS_STOPPED) return status;
         step *= status == STATUS_OK ? 2 : 0.5;
         if (step >= least_step) continue;
 
