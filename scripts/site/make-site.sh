@@ -9,13 +9,12 @@ cd "$(dirname "$0")/../.."
 folder=$(realpath -m "$1")
 source=$folder/source
 rm -rf "$folder"
-mkdir -p "$source/doc" "$folder/xml" "$folder/notebook" "$folder/extra"
+mkdir -p "$source/doc" "$folder/xml" "$folder/extra"
 
 # pages, in the layout of the repository, so that their links hold
 cp -r doc/*.md doc/shoal.ipynb doc/figures doc/examples "$source/doc/"
 cp -r CONTRIBUTING.md CHANGES.md LICENSE CITATION.cff cases "$source/"
 cp doc/case.schema.json "$source/doc/"
-cp doc/shoal.ipynb "$folder/notebook/"
 rm -f "$source/doc/figures/README.md"
 sed -i 's|](README.md)|](index.md)|; s|](../README.md)|](../index.md)|' "$source"/*.md "$source"/doc/*.md
 {
@@ -65,14 +64,14 @@ PAGE
 build/shoal run cases/school.yaml -q --force -o "$folder/school.nc" --set time.end=6
 build/shoal view "$folder/school.nc" -q --force -o "$folder/extra/school.html"
 
-# the notebook, executed, as a page of its own
+# the notebook, with the outputs that it has (scripts/notebook.py), as a page of its own
 cat >"$source/doc/notebook.md" <<'PAGE'
 # Notebook
 
 <a href="../notebook.html">The notebook doc/shoal.ipynb, executed</a>: a run, a movie, a steady state, an error bar.
 PAGE
-PYTHONPATH=$PWD/scripts PYTHONWARNINGS=ignore /usr/bin/python3 -m nbconvert --log-level=ERROR --execute --to html \
-    --output-dir="$folder/extra" --output=notebook.html "$folder/notebook/shoal.ipynb" 2>"$folder/notebook.log"
+PYTHONWARNINGS=ignore /usr/bin/python3 -m nbconvert --log-level=ERROR --to html \
+    --output-dir="$folder/extra" --output=notebook.html doc/shoal.ipynb 2>"$folder/notebook.log"
 # the template loads MathJax and RequireJS from folders of Debian, and the notebook needs neither
 sed -i '/<script[^>]*src="file:/d' "$folder/extra/notebook.html"
 

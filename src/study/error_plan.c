@@ -158,6 +158,16 @@ static bool asks_for_modes(const struct error_study *study) {
 static const double input_steps[] = {0.04, 0.08, 0.16};
 static const double input_tolerance = 1e-5;
 
+// level i of an input: below and above the value in turn, from the smallest step to the largest
+static double input_level(double value, int i) {
+    return value * (1 + (i % 2 ? 1 : -1) * input_steps[i / 2]);
+}
+
+// the frequency of a beat: the times that are parts of the beat change with it
+static bool moves_beat(const struct sweep_error_key *row) {
+    return row->kind == SWEEP_INPUT && strcmp(strrchr(row->path, '.'), ".frequency") == 0;
+}
+
 /* The row of the case of a point with some changes. */
 static struct row make_row(const struct error_study *study, int n, const struct error_plan_change *changes) {
     const struct sweep_axis *const axis = &study->study->sweep[0];
@@ -195,7 +205,7 @@ static struct row make_row(const struct error_study *study, int n, const struct 
 
         // a small change of a quantity needs a small error of the search, and only the last beat; the fish beats with
         // the same number of events
-        const bool is_beat = is_model_input && strcmp(strrchr(path, '.'), ".frequency") == 0;
+        const bool is_beat = moves_beat(key->row);
         if (is_model_input) {
             const double most = values->steady.formation == YES ? INFINITY : input_tolerance;
             row_set(&row, "steady.tolerance", 0, fmin(values->steady.tolerance, most));
@@ -371,11 +381,11 @@ static enum status choose_levels(struct error_study *study) {
             // two steps on both sides, else three on one
             bool is_valid[2] = {true, true};
             for (int i = 0; i < 4; i++) {
-                is_valid[i % 2] &= is_valid_level(study, k, base * (1 + (i % 2 ? 1 : -1) * input_steps[i / 2]));
+                is_valid[i % 2] &= is_valid_level(study, k, input_level(base, i));
             }
             const int n_steps = is_valid[0] && is_valid[1] ? 2 : 3;
             for (int i = 0; i < 2 * n_steps; i++) {
-                const double level = base * (1 + (i % 2 ? 1 : -1) * input_steps[i / 2]);
+                const double level = input_level(base, i);
                 if (is_valid[i % 2] && is_valid_level(study, k, level)) error_plan_insert(key, level);
             }
         }
@@ -559,7 +569,7 @@ static void add_all_columns(struct error_study *study) {
             add_columns(sweep, "steady.tolerance");
             add_columns(sweep, "steady.output_beats");
         }
-        const bool is_beat = is_model_input && strcmp(strrchr(row->path, '.'), ".frequency") == 0;
+        const bool is_beat = moves_beat(row);
         if (is_beat) add_columns(sweep, "time.shedding_interval");
         if (strcmp(row->path, "time.shedding_interval") != 0 && !is_beat) continue;
         add_columns(sweep, "time.end");
@@ -673,13 +683,9 @@ static enum status choose_twins(struct error_sweep *sweep, int n_axes, const str
 
     if (error->against_kind == AGAINST_FISH) {
         const char *const equals = strchr(error->against, '=');
-        for (int f = 0; f < sweep->study.school.n_fish; f++) {
-            const char *const name = sweep->study.school.fish[f].name;
-            const size_t n = strlen(name);
-            const bool is_first = n == (size_t)(equals - error->against) && strncmp(error->against, name, n) == 0;
-            if (is_first) sweep->fish = f;
-            if (strcmp(equals + 1, name) == 0) sweep->twin_fish = f;
-        }
+        const struct school_parameters *const school = &sweep->study.school;
+        sweep->fish = school_find_fish(school, error->against, (size_t)(equals - error->against));
+        sweep->twin_fish = school_find_fish(school, equals + 1, strlen(equals + 1));
     } else if (error->against_kind == AGAINST_POINT) {
         const int found = n_axes > 0 ? sweep_find_value(&axes[0], error->against) : -1;
         if (found < 0) {
