@@ -176,7 +176,7 @@ error: {of: [steady_speed, steady_cost_of_transport], within: 0.01, keys: defaul
 | `most` | refine to members of at most this many times the CPU time of the case (16) |
 | `confirm` | `false`: without a finer level of each key |
 | `models` | `true`: also with other choices of the model |
-| `against` | also ratio and difference, with their errors, to another case (`alone.yaml`), to another fish (`follower=leader`), or along a sweep to the `first` or another value of its first key ([studies.md](studies.md#what-a-difference-is-worth)) |
+| `against` | also ratio and difference, with their errors, to another case (`alone.yaml`), to another fish (`follower=leader`), or along a sweep to the `first` or another value of its first key ([studies.md](studies.md#an-error-bar-by-example)) |
 | `sensitivity` | `true`, or a list of numbers of the case: derivatives by them in place of errors ([studies.md](studies.md#which-number-matters)) |
 | `uncertain` | a map of numbers of the case and their uncertainty, `{body.modulus: 10%}`, which is added to the errors |
 | `keys` | `default`, a list of `nodes`, `sheet_points`, `shedding_interval`, `rtol`, `step`, `tolerance`, `lifetime`, or a map of levels: `{nodes: [13, 17, 25, 35], rtol: default}` |
