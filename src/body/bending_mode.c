@@ -23,8 +23,7 @@ static void momentum_load(const struct modes *modes, const double *w, double *lo
         const double before = k > 0 ? fish->added_mass[k - 1] : 0, after = k < fish->n_edges ? fish->added_mass[k] : 0;
         load[k] = (fish->mass[k] + (before + after) / 2) * w[k];
     }
-    const bool is_loaded = fish->at.full < fish->at.gamma;  // by the sheet
-    if (!is_loaded) return;
+    if (!fish_is_loaded_by_sheet(fish)) return;
 
     const int n_terms = fish->n_nodes, n_points = 4 * fish->n_nodes;
     const double step = M_PI / n_points;

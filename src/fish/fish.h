@@ -278,6 +278,11 @@ static inline bool fish_feels_own_wake(const struct fish *fish) {
     return fish->force != FORCE_REACTIVE;
 }
 
+/* Whether the bound sheet loads the body, as its pressure does: the law of motion then depends on the whole sheet. */
+static inline bool fish_is_loaded_by_sheet(const struct fish *fish) {
+    return fish->at.full < fish->at.gamma;
+}
+
 /* Whether the muscle drives the body with a wave. */
 bool fish_has_wave(const struct fish *fish);
 

@@ -48,7 +48,7 @@ static void add_own_rows(const struct residual *residual, const struct residual_
         const bool is_place = c < n_places, is_shed = c == rows->n_columns - 1;
 
         const bool is_nascent = fish_feels_own_wake(fish) && (is_shed || (is_place && node == n_nodes - 1));
-        const bool all = is_nascent || fish->at.full < fish->at.gamma || residual->school->walls.n > 0;
+        const bool all = is_nascent || fish_is_loaded_by_sheet(fish) || residual->school->walls.n > 0;
         const int first = all || node == 0 ? 0 : node - 1, last = all || node >= felt_at_tail ? n_nodes - 1 : node + 1;
 
         for (int k = first; (is_place || all) && k <= last; k++) {

@@ -48,7 +48,7 @@ struct fish_factors *fish_factors_create(struct arena *arena, const struct fish 
     factors->fish = fish;
     factors->block = block;
     // where the law of motion is as full as the rows of the sheet, the positions count among the last columns
-    const bool is_full = fish->at.full < fish->at.gamma;
+    const bool is_full = fish_is_loaded_by_sheet(fish);
     factors->first = is_full ? fish->at.vx - fish->at.x : 0;
     factors->n_rod = fish->at.full - fish->at.x;
     factors->n_sheet = block->n - factors->n_rod;

@@ -169,9 +169,10 @@ static enum status ida_first_step(struct ida *solver) {
 static enum status ida_create(struct arena *arena, void **created, struct residual *residual, struct state *state,
                               const struct integrator_options *options) {
     const struct school *const school = residual->school;
-    const int n = school->n_unknowns, is_sheet = school->shedding == SHEDDING_SHEET;
+    const int n = school->n_unknowns;
+    const bool is_sheet = school->shedding == SHEDDING_SHEET;
     bool is_loaded = false;  // whether a sheet, with its nascent stretch, acts on a body
-    for (int f = 0; f < school->n_fish; f++) is_loaded |= school->fish[f].at.full < school->fish[f].at.gamma;
+    for (int f = 0; f < school->n_fish; f++) is_loaded |= fish_is_loaded_by_sheet(&school->fish[f]);
 
     struct ida *solver;
     NEW(arena, solver, 1);
