@@ -676,14 +676,13 @@ static void check_control(const struct check *check) {
 /* Refuse a derived default out of the range of its key, at the place of its cause. */
 static void check_derived(const struct check *check, bool is_of_fish) {
     const struct fish_parameters *const fish = check->fish;
-    const bool is_prescribed = (int)fish->motion.prescribed > PRESCRIBED_NONE && fish->motion.frequency > 0;
     for (int k = 0; k < case_table_n; k++) {
         const struct key *const key = &case_table[k];
         if (!key->cause || case_table_is_of_fish(key) != is_of_fish || check_is_written(check, key->path)) continue;
 
         // the key that puts the number out of its range
         const char *cause = key->cause;
-        if (strcmp(cause, "fish.wave.frequency") == 0 && is_prescribed) cause = "fish.motion.frequency";
+        if (strcmp(cause, "fish.wave.frequency") == 0 && fish_parameters_move(fish)) cause = "fish.motion.frequency";
         if (strcmp(key->path, "fish.sheet_points") == 0) {
             if (fish->body.profile == PROFILE_TABLE) cause = "fish.body.depth_table";
             if (2 * fish->nodes - 1 > key->bounds.max) cause = "fish.nodes";
@@ -744,9 +743,7 @@ void case_check(const struct case_values *values, const struct case_tree *tree, 
     double size = 0;
     check.index = 0;
     for (int f = 0; f < school->n_fish; f++) {
-        const struct motion_parameters *const motion = &school->fish[f].motion;
-        const bool is_prescribed = (int)motion->prescribed > PRESCRIBED_NONE && motion->frequency > 0;
-        const double frequency = is_prescribed ? motion->frequency : school->fish[f].wave.frequency;
+        const double frequency = fish_parameters_frequency(&school->fish[f]);
         if (!(frequency > 0) || fabs(log(frequency)) <= size) continue;
         size = fabs(log(frequency));
         check.index = f;

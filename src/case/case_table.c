@@ -40,12 +40,6 @@ static void set_default(double *value, double standard) {
     if (isnan(*value)) *value = text_round(standard);
 }
 
-/* The frequency of the beat of a fish, or of the prescribed motion [Hz]; 0 without a beat. */
-static double beat_frequency(const struct fish_parameters *fish) {
-    const bool is_prescribed = (int)fish->motion.prescribed > PRESCRIBED_NONE && fish->motion.frequency > 0;
-    return is_prescribed ? fish->motion.frequency : fish->wave.frequency;
-}
-
 static void derive_case_name(const struct key_place *at) {
     if (at->values->name) return;
     const char *const slash = strrchr(at->origin, '/'), *const from = slash ? slash + 1 : at->origin;
@@ -70,7 +64,8 @@ static void derive_shedding_interval(const struct key_place *at) {
                   fastest = 0;
     if (!isnan(*interval)) return;
 
-    for (int i = 0; i < values->school.n_fish; i++) fastest = fmax(fastest, beat_frequency(&values->school.fish[i]));
+    for (int i = 0; i < values->school.n_fish; i++)
+        fastest = fmax(fastest, fish_parameters_frequency(&values->school.fish[i]));
     *interval = fastest > 0 ? 1 / (100 * fastest) : 0.01;
     round_to_multiple(&values->time.end, *interval, true);
     round_to_multiple(&values->time.checkpoint_interval, *interval, false);
@@ -96,7 +91,7 @@ static void derive_wake(const struct key_place *at) {
     struct street_parameters *const street = &wake->street;
     double period = 0;
     for (int f = 0; f < at->values->school.n_fish; f++) {
-        const double frequency = beat_frequency(&at->values->school.fish[f]);
+        const double frequency = fish_parameters_frequency(&at->values->school.fish[f]);
         if (frequency > 0) period = fmax(period, 1 / frequency);
     }
 
@@ -136,7 +131,7 @@ static void derive_fish(const struct key_place *at) {
     set_default(&fish->drag.normal, fish->force != FORCE_PRESSURE || (fish_is_strip(fish) && !is_held));
 
     // times in beats
-    const double beat = beat_frequency(fish), frequency = fish->wave.frequency;
+    const double beat = fish_parameters_frequency(fish), frequency = fish->wave.frequency;
     const double period = frequency > 0 ? 1 / frequency : 0;
     set_default(&fish->body.relaxation_time, beat > 0 ? 0.02 / beat : 0);
     set_default(&fish->wave.ramp, period);

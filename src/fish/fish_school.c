@@ -206,7 +206,7 @@ static void fish_fill(const struct school *school, int f, const struct school_pa
                                    .omega = 2 * M_PI * motion->frequency,
                                    .phase = angle_radians(motion->phase),
                                    .pivot = motion->pivot * from->length};
-    fish->frequency = is_prescribed && motion->frequency > 0 ? motion->frequency : from->wave.frequency;
+    fish->frequency = fish_parameters_frequency(from);
     fish->period = fish->frequency > 0 ? 1 / fish->frequency : 0;
     control_set(arena, fish, from, parameters);
 

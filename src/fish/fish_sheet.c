@@ -9,8 +9,7 @@
 #include "fish/shape.h"
 #include "fish/sheet_integrals.h"
 
-// sigma at j intervals of the angle from the nose
-static double cosine_place(const struct fish *fish, double j) {
+double fish_sheet_place(const struct fish *fish, double j) {
     const int last = fish->n_sheet - 1;
     return j == last ? 1 : (1 - cos(M_PI * j / last)) / 2;
 }
@@ -23,7 +22,7 @@ static enum status points_set(struct arena *arena, struct fish *fish, bool is_sm
     fish->curve = curve;
     for (int j = 0; j <= last; j++) {
         TRY(status_ask(stop));
-        const double u = cosine_place(fish, j) * fish->n_edges;
+        const double u = fish_sheet_place(fish, j) * fish->n_edges;
         fish->sheet_point[j] = is_smooth ? curve_smooth_point(curve, u) : curve_polygon_point(curve, u);
         if (!is_smooth || j == 0 || j == last) continue;  // quadrature weight 0
         fish->sheet_slope[j] = curve_smooth_slope(curve, u);
@@ -32,9 +31,9 @@ static enum status points_set(struct arena *arena, struct fish *fish, bool is_sm
 
     for (int c = 0; c < last; c++) {
         TRY(status_ask(stop));
-        const double at_angle = cosine_place(fish, c + 0.5);
+        const double at_angle = fish_sheet_place(fish, c + 0.5);
         if (is_smooth) {
-            const double middle = (cosine_place(fish, c) + cosine_place(fish, c + 1)) / 2;
+            const double middle = (fish_sheet_place(fish, c) + fish_sheet_place(fish, c + 1)) / 2;
             const double u = (is_chebyshev ? at_angle : middle) * fish->n_edges;
             fish->control_point[c] = curve_smooth_point(curve, u);
             fish->control_tangent[c].to = curve_smooth_slope(curve, u);
@@ -88,14 +87,14 @@ static void strip_set(struct arena *arena, struct fish *fish, double leg_length)
 
     double slope;
     for (int j = 0; j < fish->n_sheet; j++) {
-        const double depth = strip_depth(fish, cosine_place(fish, j) * fish->n_edges, &slope);
+        const double depth = strip_depth(fish, fish_sheet_place(fish, j) * fish->n_edges, &slope);
         fish->sheet_half[j] = depth * depth / 32;
     }
 
     // the points of the flow: control points, edge midpoints, tail
     double *const half = fish->point_half;
     for (int c = 0; c < fish->n_control; c++) {
-        const double depth = strip_depth(fish, cosine_place(fish, c + 0.5) * fish->n_edges, &slope);
+        const double depth = strip_depth(fish, fish_sheet_place(fish, c + 0.5) * fish->n_edges, &slope);
         half[c] = depth * depth / 32;
         fish->control_widening[c] = depth * slope / 16;
     }
@@ -114,7 +113,7 @@ static enum status pressure_set(struct arena *arena, struct fish *fish, int f, c
     for (int k = 0; k < fish->n_edges; k++) per_edge[k] = density * (is_strip ? fish->strip_depth : fish->depth[k]);
 
     for (int c = 0; c < fish->n_control; c++) {
-        fish->control_density[c] = per_edge[(int)(cosine_place(fish, c + 0.5) * fish->n_edges)];
+        fish->control_density[c] = per_edge[(int)(fish_sheet_place(fish, c + 0.5) * fish->n_edges)];
         fish->control_interval[c] = fish->n_edges / 2.0 * sin((c + 0.5) * h) * h;
     }
 
@@ -151,7 +150,7 @@ static enum status line_set(struct arena *arena, struct fish *fish, const struct
 
     // circulations per unknown
     for (int j = 1; j < n_sheet; j++) {
-        const double distance = cosine_place(fish, j) - cosine_place(fish, j - 1);
+        const double distance = fish_sheet_place(fish, j) - fish_sheet_place(fish, j - 1);
         fish->sheet_weight[j - 1] += distance * fish->length / 2;
         fish->sheet_weight[j] += distance * fish->length / 2;
     }
@@ -172,10 +171,10 @@ static enum status line_set(struct arena *arena, struct fish *fish, const struct
     // E_c, for a sheet with the vortex strength of the wake at the tail
     const double h = M_PI / last, weight = fish->length / 2 * h * sin(M_PI * (last - 1) / last);
     for (int c = 0; c < n_control && parameters->wake.shedding == SHEDDING_SHEET; c++) {
-        const double place = cosine_place(fish, c + 0.5);
+        const double place = fish_sheet_place(fish, c + 0.5);
         double quadrature = 0;
         for (int j = 1; j < last; j++) {
-            const double sigma = cosine_place(fish, j);
+            const double sigma = fish_sheet_place(fish, j);
             quadrature += h / 2 * sin(j * h) * sigma / (2 * M_PI * (place - sigma));
         }
 

@@ -5,6 +5,7 @@
 #define PARAMETERS_H
 
 #include <signal.h>
+#include <stdbool.h>
 #include <string.h>
 
 enum shedding { SHEDDING_CONTINUOUS, SHEDDING_IMPULSIVE, SHEDDING_SHEET };
@@ -176,6 +177,16 @@ struct fish_parameters {
     struct motion_parameters motion;
     struct control_parameters control;
 };
+
+/* Whether a prescribed motion sets the beat; a choice that is not made yet is negative. */
+static inline bool fish_parameters_move(const struct fish_parameters *fish) {
+    return (int)fish->motion.prescribed > PRESCRIBED_NONE && fish->motion.frequency > 0;
+}
+
+/* The frequency of the beat, that is of the prescribed motion or else of the wave of the muscle, Hz; 0: no beat. */
+static inline double fish_parameters_frequency(const struct fish_parameters *fish) {
+    return fish_parameters_move(fish) ? fish->motion.frequency : fish->wave.frequency;
+}
 
 struct contact_parameters {
     enum contact_action action;

@@ -8,6 +8,7 @@
 #include "base/wide.h"
 #include "body/rod.h"
 #include "fish/fish_motion.h"
+#include "fish/fish_sheet.h"
 #include "force/edge_force.h"
 #include "force/force_model.h"
 #include "state/impulse.h"
@@ -436,8 +437,7 @@ void pressure_of_edge(const struct pressure *p, int k, const double *y, const do
     const struct fish *fish = p->fish;
     force[0] = force[1] = 0;
     for (int c = 0; c < fish->n_control; c++) {
-        const double u = fish->n_edges * (1 - cos(M_PI * (c + 0.5) / fish->n_control)) / 2;
-        if ((int)u != k) continue;
+        if ((int)(fish_sheet_place(fish, c + 0.5) * fish->n_edges) != k) continue;
 
         const struct direction *const body = &p->point[c].body;
         const double length = body->length * fish->control_interval[c];

@@ -194,6 +194,7 @@ static void sensor_add_fish(const struct sensor_targets *at, int f, int g) {
 // ---- Bernoulli's equation on both sides
 
 int sensor_weights(const struct fish *fish, double fraction, double weight[4]) {
+    // the inverse of fish_sheet_place, in control points
     const double place = acos(1 - 2 * fraction) / M_PI * fish->n_control - 0.5;
     const int most = fish->n_control - 3, c = (int)fmin(fmax(floor(place), 1), most);
     const double x = place - c;
