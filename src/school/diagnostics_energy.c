@@ -38,8 +38,7 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
     const struct fluid_force *const force = &residual->force[f];
     if (force->model->update) force->model->update(force, &flow, y, residual->state->yp);
     const struct fluid_power fluid = force->model->power(force, &flow, y);
-    residual_actuate(residual, f, t, y);
-    const struct actuation muscle = residual_muscle(residual, f);
+    const struct actuation muscle = residual_actuate(residual, f, t, y);
     const struct rod_strains strains = find_strains(residual, f, &muscle, y);
 
     // internal powers
@@ -91,8 +90,7 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
 
 struct diagnostics_energies diagnostics_energies(struct residual *residual, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
-    residual_actuate(residual, f, t, y);
-    const struct actuation muscle = residual_muscle(residual, f);
+    const struct actuation muscle = residual_actuate(residual, f, t, y);
     const struct rod_strains strains = find_strains(residual, f, &muscle, y);
     const struct rod_energetics body = rod_energetics(fish, &muscle, &strains);
     double kinetic = 0;
@@ -132,8 +130,7 @@ static void add_works(struct residual *residual, struct state *state, int f, dou
     if (fish->damping != DAMPING_CURVATURE && h > 0) {
         double *const scratch = residual->scratch, *const stress = scratch + fish->at.vx;
         const struct rod_strains by_places = {scratch + fish->at.x, scratch + fish->at.ax, stress};
-        residual_actuate(residual, f, t, y);
-        const struct actuation muscle = residual_muscle(residual, f);
+        const struct actuation muscle = residual_actuate(residual, f, t, y);
         rod_strains(fish, &muscle, y, &by_places);
         residual_balance(residual, f, y, scratch);
         rod_stress_balance(fish, scratch, y, stress);
@@ -200,8 +197,7 @@ void diagnostics_after_jump(struct residual *residual, struct state *state) {
         // the strains and stresses of a consistent state, from which add_works starts
         const struct fish *fish = &residual->school->fish[f];
         struct energy_balance *const balance = &state->balance[f];
-        residual_actuate(residual, f, state->t, state->y);
-        const struct actuation muscle = residual_muscle(residual, f);
+        const struct actuation muscle = residual_actuate(residual, f, state->t, state->y);
         const struct rod_strains strains = {balance->strain, residual->scratch + fish->at.vx, balance->stress};
         rod_strains(fish, &muscle, state->y, &strains);
 

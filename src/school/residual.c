@@ -240,12 +240,13 @@ struct actuation residual_muscle(const struct residual *residual, int f) {
     return actuation_from(&residual->muscle, residual->joints[f].first);
 }
 
-void residual_actuate(struct residual *residual, int f, double t, const double *y) {
+struct actuation residual_actuate(struct residual *residual, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
     const struct state *const state = residual->state;
     const struct actuation muscle = residual_muscle(residual, f);
     const double phi0_rate = control_rate(fish, &state->control[f], t, t - state->t, y);
     actuation_find(fish, control_gait(fish, &state->control[f], t, t - state->t), y[fish->at.phi0], phi0_rate, &muscle);
+    return muscle;
 }
 
 // bring the force of the fluid on fish f up to date; yp: NULL without the rates
@@ -272,19 +273,20 @@ void residual_forces(const struct residual *residual, int f, const double *y, do
 }
 
 // the rows ax, ay without the forces of residual_forces
-static void residual_of_body(const struct residual *residual, int f, const double *y, double *value) {
+static void residual_of_body(const struct residual *residual, const struct actuation *muscle, int f, const double *y,
+                             double *value) {
     const struct fish *fish = &residual->school->fish[f];
     for (int k = 0; k < fish->n_nodes; k++) {
         value[fish->at.ax + k] = fish->mass[k] * y[fish->at.ax + k];
         value[fish->at.ay + k] = fish->mass[k] * y[fish->at.ay + k];
     }
-    const struct actuation muscle = residual_muscle(residual, f);
-    rod_residual(fish, &muscle, y, value);
+    rod_residual(fish, muscle, y, value);
     rod_clamp_residual(fish, residual->flow->t, y, value);
 }
 
 void residual_balance(const struct residual *residual, int f, const double *y, double *value) {
-    residual_of_body(residual, f, y, value);
+    const struct actuation muscle = residual_muscle(residual, f);
+    residual_of_body(residual, &muscle, f, y, value);
     residual_forces(residual, f, y, value);
 }
 
@@ -306,8 +308,8 @@ static void evaluate_fish(struct residual *residual, const struct residual_mode 
     force->model->motion_residual(force, mode->velocities_are_given, y, yp, value);
 
     // equation of motion, divided by the node masses
-    residual_actuate(residual, f, t, y);
-    residual_of_body(residual, f, y, value);
+    const struct actuation muscle = residual_actuate(residual, f, t, y);
+    residual_of_body(residual, &muscle, f, y, value);
     if (mode->forces) {
         for (int i = fish->at.ax; i < fish->at.ax + 2 * fish->n_nodes; i++) value[i] -= mode->forces[i];
     } else {

@@ -120,9 +120,9 @@ struct residual *residual_create(struct arena *arena, const struct school *schoo
 enum status residual_evaluate(struct residual *residual, const struct residual_mode *mode, double t, const double *y,
                               const double *yp, double *value);
 
-/* Evaluate the actuation of the joints of fish f for the phi0 in y; the second function gives what was evaluated
- * last. */
-void residual_actuate(struct residual *residual, int f, double t, const double *y);
+/* Evaluate the actuation of the joints of fish f for the phi0 in y, keep it for the equations of the body that are
+ * evaluated next, and return it. residual_muscle returns what is kept. */
+struct actuation residual_actuate(struct residual *residual, int f, double t, const double *y);
 struct actuation residual_muscle(const struct residual *residual, int f);
 
 /* Set the rows ax, ay of fish f in N, without prescribed motion: m a minus all forces. Uses the flow velocity, the

@@ -82,8 +82,7 @@ static void fish_jacobian(struct residual *residual, const struct residual_mode 
         sparse_add(own, fish->at.ax + i, fish->at.ax + i, 1);
     }
     force->model->motion_jacobian(force, mode->velocities_are_given, cj, y, own);
-    residual_actuate(residual, f, t, y);
-    const struct actuation muscle = residual_muscle(residual, f);
+    const struct actuation muscle = residual_actuate(residual, f, t, y);
     rod_jacobian(fish, &muscle, y, own);
     const struct control_memory *const memory = &residual->state->control[f];
     const double since = t - residual->state->t;

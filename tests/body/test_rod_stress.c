@@ -204,8 +204,7 @@ TEST(a_soft_body_has_the_stresses_of_its_places) {
     struct simulation *const simulation = fish_from_rest("1e6", "1e-7");
     const struct fish *fish = simulation->school->fish;
     const struct energy_balance *const balance = &simulation->state->balance[0];
-    residual_actuate(simulation->residual, 0, 2, simulation->state->y);
-    const struct actuation muscle = residual_muscle(simulation->residual, 0);
+    const struct actuation muscle = residual_actuate(simulation->residual, 0, 2, simulation->state->y);
     double strain[STRAINS], rate[STRAINS], stress[STRAINS], largest = 0;
     const struct rod_strains by_places = {strain, rate, stress}, by_momentum = {strain, rate, balance->stress};
     rod_strains(fish, &muscle, simulation->state->y, &by_places);

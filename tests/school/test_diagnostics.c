@@ -100,8 +100,7 @@ TEST(strains_are_integrated_with_third_order) {
         while (simulation->state->t < 0.5 - 1e-6) {
             school_ok(simulate_step(simulation));
             const struct state *const now = simulation->state;
-            residual_actuate(simulation->residual, 0, now->t, now->y);
-            const struct actuation muscle = residual_muscle(simulation->residual, 0);
+            const struct actuation muscle = residual_actuate(simulation->residual, 0, now->t, now->y);
             rod_strains(fish, &muscle, now->y, &(struct rod_strains){strain, rate, stress});
             for (int k = 0; k < fish->n_joints; k++) worst[i] = fmax(worst[i], fabs(balance->strain[k] - strain[k]));
         }
