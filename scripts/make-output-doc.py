@@ -26,8 +26,9 @@ since 4.4 reads. Most questions need one of ten variables:
 | `least_distance` | smallest distance between two bodies | m |
 | `wake_x`, `wake_circulation` | the vortices of the wakes: positions, and circulation | m, m2 s-1 |
 
-`run.speed.plot.line(x="time")` draws one of them (see below), and `scripts/plot.py time demo.nc` several. All other
-variables stand in the tables at the end of this page.
+`run.speed.plot.line(x="time")` draws one of them (see below), and `scripts/plot.py time demo.nc` draws several. The tables
+at the end of this page list all variables; before them you find how to open a file, what its dimensions mean, and how to
+repeat the run that wrote it.
 
 ## Opening
 
@@ -48,8 +49,8 @@ Octave (`pkg load netcdf`) and MATLAB list the dimensions in the opposite order:
     x = ncread("demo.nc", "x");                         % (xy, node, fish, time)
     plot(squeeze(x(1, 1, 1, :)), squeeze(x(2, 1, 1, :)))  % path of the nose of the first fish
 
-`shoal view demo.nc` writes a page that plays bodies and wakes in any browser, `shoal export demo.nc --vtk demo` files
-for ParaView. Figures and films: [gallery.md](gallery.md).
+`shoal view demo.nc` writes a page that plays bodies and wakes in any browser, and `shoal export demo.nc --vtk demo` writes
+files for ParaView. [gallery.md](gallery.md) shows figures and films.
 
 ## Dimensions
 
@@ -65,19 +66,19 @@ for ParaView. Figures and films: [gallery.md](gallery.md).
 | `wall` | 1, or 2 for a channel; only with `fluid.walls`, like `wall_y` |
 | `multiplier` | six for each fish; only in files of `shoal steady`, like the variables `steady_...` ([steady.md](steady.md)) |
 
-A fish with fewer points uses the first `n_nodes`, `n_edges`, `n_joints`, `n_sheet` slots. All other slots, and
-undefined quantities such as a mean in the first beat, are NaN, the `_FillValue`.
+A fish with fewer points than the largest one uses the first `n_nodes`, `n_edges`, `n_joints`, `n_sheet` slots. All other
+slots are NaN, the `_FillValue`, and so are quantities that are not defined, such as a mean in the first beat.
 
-*Wake.* A fish has `wake_count` free vortices in the first slots, oldest first; `wake_birth` identifies a vortex. Rows
-between two records of the wake (`output.wake_interval`) hold NaN there. The vortex that grows at the tail has no slot
-before the release.
+*Wake.* The free vortices of a fish, `wake_count` of them, stand in the first slots, oldest first, and `wake_birth`
+identifies a vortex from row to row. Rows between two records of the wake (`output.wake_interval`) have NaN there. The
+vortex that grows at the tail has no slot before it is released.
 
 `output.precision: single` stores the variables marked *single* below as float, which halves the file.
 
 ## Reading during a run
 
-Readers can open the file at any time, and again to see new rows. A killed run keeps all rows. The attribute
-`run_status` is the state of the run:
+You can open the file at any time during a run, and open it again to see new rows. If the run is killed, all rows stay.
+The attribute `run_status` tells the state of the run:
 
 | `run_status` | meaning |
 |---|---|
@@ -86,26 +87,28 @@ Readers can open the file at any time, and again to see new rows. A killed run k
 | `stopped` | stopped by a signal or `--max-wall`; `shoal resume` continues ([reliability.md](reliability.md)) |
 | `failed: ...` | the integration or the writing failed, or bodies met with `contact.action: stop`; the rows are valid |
 
-The attribute `warnings` has one line for each defect of a result, with the most affected fish. `shoal run`, `shoal
-info` and `shoal gather` print the warnings; with `--strict` the exit code is 3. The attribute `closest_approach` has
-the least distance of two bodies, with fish and time.
+The attribute `warnings` has one line for each defect of the result and names the fish that it affects most. `shoal run`,
+`shoal info` and `shoal gather` print these warnings, and with `--strict` they then end with exit code 3. The attribute
+`closest_approach` has the least distance of two bodies, with the fish and the time.
 
 @WARNINGS@
 
-Every command and script refuses a truncated file; a study runs such a member again.
+Every command and script refuses a truncated file, and a study runs such a member again.
 
 ## Repeating a run
 
-Attribute `case_effective` is the complete case, after includes, preset and `--set`; `case_text` is the original file.
-`source` names the program, the commit and the libraries, `history` the time and the command, `method` the method of
-integration.
+A result contains all that is needed to repeat its run:
 
     shoal info --case demo.nc > again.yaml
     shoal run again.yaml
 
-reproduces the numbers, with the same program to the bit except `wall_time` and `history`. A run that was stopped and
-resumed also needs `--checkpoint-at` with the attribute `checkpoint_at`, the times of checkpoints besides
-`time.checkpoint_interval`.
+reproduces the numbers. With the same program it reproduces every bit except `wall_time` and `history`. A run that was
+stopped and resumed also needs `--checkpoint-at` with the times in the attribute `checkpoint_at`, which are those of the
+checkpoints besides `time.checkpoint_interval`.
+
+The attribute `case_effective` is the complete case, after includes, preset and `--set`, and `case_text` is the original
+file. `source` names the program, the commit and the libraries, `history` the time and the command, and `method` the
+method of integration.
 
 ## Attributes
 
@@ -128,20 +131,24 @@ OTHERS = {
     "study": """
 ## The file of a study
 
-`shoal study` and `shoal gather` make `study.nc` from the files of the members. Attribute `study_case` is the case with
-the sweep, `shoal_study` is 1. Each swept key is a variable over `member`, named like the key with `_` for `.` and
-without brackets; `long_name` is the path, `axis` the number of the axis, and `refine` is 1 on a refined axis. The last
-row of every variable over (time), (time, fish) or (time, fish, xy) is included, with `member` for `time`; for steady
-states also `steady_...`.
+`shoal study` and `shoal gather` make `study.nc` from the files of the members. It has the last row of every variable over
+(time), (time, fish) or (time, fish, xy), with `member` in place of `time`, and for steady states also `steady_...`. Each
+swept key is a variable over `member`, named like the key with `_` for `.` and without brackets. Its attribute `long_name`
+is the path of the key, `axis` the number of the axis, and `refine` is 1 on a refined axis. The attribute `study_case` of
+the file is the case with the sweep, and `shoal_study` is 1.
 
-A refined axis adds the variables over `level` and `group` (members that differ in the refined key only), for each
-quantity Q with orders ([cases.md](cases.md)): the order of the nose is `order_nose`. `error` adds the variables over
-`key`, `stated_Q` and `bar_Q`. With `error.against` there are three quantities for each one requested: Q, `ratio_Q` (over
-that of the twin) and `change_Q` (less that of the twin), and members of the other case. `shoal compare -o FILE` writes
-one axis, which sets `solver.method`, `solver.order`, `solver.rtol` and `solver.step`, with `nose_error`, `tail_error`,
-`power_error`, `evaluations_to_end` and `wall_time_to_end`: member 0 is the reference, member 1 measures the error of the
-reference, other members with equal values are repeats. For a member beyond the time limit `time` and the counts are those
-that it reached, and the last two are extrapolated to the end in proportion to time; `status` says so.
+*A refined axis* adds the variables over `level` and `group` (members that differ in the refined key only), for each
+quantity Q that has orders ([cases.md](cases.md)); the order of the nose, for example, is `order_nose`.
+
+*Error bars.* `error` adds the variables over `key`, and `stated_Q` and `bar_Q`. With `error.against` the file has the
+members of the other case too, and three quantities for each one requested: Q, `ratio_Q` (Q over that of the other case)
+and `change_Q` (the difference of both).
+
+*A comparison.* `shoal compare -o FILE` writes one axis, which sets `solver.method`, `solver.order`, `solver.rtol` and
+`solver.step`, with `nose_error`, `tail_error`, `power_error`, `evaluations_to_end` and `wall_time_to_end`. Member 0 is the
+reference, member 1 measures the error of the reference, and members with equal values are repeats. If a member exceeded
+the time limit, `time` and the counts are those that it reached, the last two variables are extrapolated to the end in
+proportion to time, and `status` says so.
 """,
     "field": """
 ## The file of a field
@@ -150,12 +157,12 @@ that it reached, and the last two are extrapolated to the end in proportion to t
     shoal field demo.nc --at 2.5 --grid 600,400 --box -2,-1,2,1 -o field.nc
     scripts/plot.py field field.nc                           # vorticity (--speed: speed), streamlines, bodies: field.png
 
-`shoal field` writes velocity and vorticity of the fluid on a grid, at the time of one row: the sum of the external
-flow, every bound sheet and every wake, as at another body at that position (doc/model.md, section 8), with an error
-of 1e-7 of the sum of absolute values. The field omits the thickness of bodies, which are lines in the model. A row
-without a wake (`output.wake_interval`) has no field.
+`shoal field` writes the velocity and the vorticity of the fluid on a grid, at the time of one row. They are the sum of the
+external flow, every bound sheet and every wake, as another body at that position would feel it (doc/model.md, section 8),
+with an error of 1e-7 of the sum of absolute values. Bodies are lines in the model, so the field does not show their
+thickness. A row without a wake (`output.wake_interval`) has no field.
 
-Attribute `run` names the file of the run, `case_effective` is the case, `shoal_field` is 1.
+The attribute `run` names the file of the run, `case_effective` is the case, and `shoal_field` is 1.
 """,
 }
 
