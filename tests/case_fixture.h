@@ -1,4 +1,5 @@
-/* case_fixture.h: what the tests of cases share: cases with and without sweeps, parsing, and the comparison of two. */
+/* case_fixture.h: What the tests of cases share: texts with and without sweeps, their parsing, and the comparison of
+ * two cases. */
 #ifndef CASE_FIXTURE_H
 #define CASE_FIXTURE_H
 

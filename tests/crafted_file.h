@@ -1,4 +1,4 @@
-/* crafted_file.h: NetCDF files in which one variable is not what it should be. */
+/* crafted_file.h: Makes NetCDF files in which one variable is not what it should be. */
 #ifndef CRAFTED_FILE_H
 #define CRAFTED_FILE_H
 

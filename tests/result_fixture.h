@@ -1,4 +1,5 @@
-/* result_fixture.h: what the tests of result files share: a folder, a file in it, and everything a row is made of. */
+/* result_fixture.h: What the tests of result files share: a folder, a file in it, and everything of which a row is
+ * made. */
 #ifndef RESULT_FIXTURE_H
 #define RESULT_FIXTURE_H
 

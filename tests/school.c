@@ -1,4 +1,5 @@
-/* school.c: schools, random states, differences. */
+/* school.c: Schools from the text of a case, random states, and derivatives by differences, for the tests of the
+ * physics. */
 #include "school.h"
 
 #include <stdarg.h>

@@ -1,5 +1,5 @@
-/* school.h: common functions of the tests of the physics: a school from the text of a case, a state without accidental
- * zeros and symmetries, a comparison of derivatives with differences, and short runs. */
+/* school.h: What the tests of the physics share: a school from the text of a case, a state without accidental zeros and
+ * symmetries, a comparison of derivatives with differences, and short runs. */
 #ifndef SCHOOL_H
 #define SCHOOL_H
 

@@ -1,4 +1,5 @@
-/* steady_setup.h: what the tests of steady states share: the problem of a case, from its text to what is found. */
+/* steady_setup.h: What the tests of steady states share: the problem of a case, from its text to what the search finds.
+ * */
 #ifndef STEADY_SETUP_H
 #define STEADY_SETUP_H
 

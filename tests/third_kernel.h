@@ -1,5 +1,5 @@
-/* third_kernel.h: a kernel that is no part of the program: finite span with b doubled for all pairs. Tree, images,
- * Jacobian and field run with this kernel as with any other. */
+/* third_kernel.h: A kernel that is no part of the program, with finite span and b doubled for all pairs. Tree, images,
+ * Jacobian and field must work with it as with any other. */
 #ifndef THIRD_KERNEL_H
 #define THIRD_KERNEL_H
 

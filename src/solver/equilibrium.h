@@ -1,6 +1,6 @@
 /* equilibrium.h: finds bodies at rest in a stream, that is the positions of the nodes at which all forces balance, and
  * the bound sheets there. No circulation is shed: the starting vortices are infinitely far away, and the strength at
- * the tail is 0. doc/steady.md, "Without a beat". Tested by tests/solver/test_equilibrium.c. */
+ * the tail is 0. doc/steady.md, "Equilibria without a beat". Tested by tests/solver/test_equilibrium.c. */
 #ifndef EQUILIBRIUM_H
 #define EQUILIBRIUM_H
 

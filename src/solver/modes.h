@@ -1,5 +1,5 @@
 /* modes.h: finds the modes of small disturbances of bodies that are in equilibrium in a stream: how they flutter,
- * diverge or decay. doc/steady.md, "Without a beat". Tested by tests/steady/test_steady_modes.c.
+ * diverge or decay. doc/steady.md, "Equilibria without a beat". Tested by tests/steady/test_steady_modes.c.
  *
  * With y = equilibrium + Y exp(lambda t) and the wake that this motion sheds, the linearised equations are
  *

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The cases of the article's figures (cases/article) do what the article says of them, and the table of doc/article.md has
-# their numbers. The bounds are in scripts/article.py.
+# The cases of the article's figures (cases/article) do what the article says of them, and the table of doc/article.md
+# has their numbers. scripts/article.py holds the bounds.
 #
 #   tests/app/test_article.sh PROGRAM
 # shellcheck source=tests/checks.sh

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# `shoal check`: one verdict, with everything known before the first step, without a whole run.
+# `shoal check` prints one verdict with everything that is known before the first step, and does so without a whole run.
 #
 #   tests/app/test_check.sh PROGRAM
 # shellcheck source=tests/checks.sh

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The command line: help, exit codes, files that are in the way, signals, full disks.
+# Tests the command line: help, exit codes, files that are in the way, signals and full disks.
 #
 #   tests/app/test_command.sh PROGRAM
 # shellcheck source=tests/checks.sh

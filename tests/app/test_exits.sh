@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Ends of the program and the printed messages: signals and limits, exits of libraries, names with control characters.
+# However the program ends, by a signal, a limit or an exit inside a library, it prints one message; names with control
+# characters are printed safely.
 #
 #   tests/app/test_exits.sh PROGRAM
 # shellcheck source=tests/checks.sh

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# shoal field: the flow of a result on a grid, messages, and the figure.
+# `shoal field` writes the flow of a result on a grid, refuses what it cannot read with a message, and its file can be
+# drawn.
 #
 #   tests/app/test_field.sh PROGRAM
 # shellcheck source=tests/checks.sh

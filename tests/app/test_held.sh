@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Thrust, power and efficiency of a held body: one definition in the file of a run, its summary, a steady state, a study and the table of the study.
+# Thrust, power and efficiency of a held body have one definition in the file of a run, in its summary, in a steady
+# state, in a study and in the table of the study.
 #
 #   tests/app/test_held.sh PROGRAM
 # shellcheck source=tests/checks.sh

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The steady state of a case, and the equilibrium of a case without a beat: printed values, values in the file, and messages of failures.
+# The steady state of a case, and the equilibrium of a case without a beat, have the same values on the screen and in
+# the file, and failures have messages.
 #
 #   tests/app/test_steady_command.sh PROGRAM
 # shellcheck source=tests/checks.sh

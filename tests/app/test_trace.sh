@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# shoal run and steady --trace: a line for each attempted step, which agrees with the totals of the result; messages.
+# `shoal run --trace` and `shoal steady --trace` write a line for each attempted step, and the lines agree with the
+# totals of the result.
 #
 #   tests/app/test_trace.sh PROGRAM
 # shellcheck source=tests/checks.sh

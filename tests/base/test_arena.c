@@ -1,4 +1,5 @@
-/* test_arena.c: pieces, children, deferred releases, and boundaries. */
+/* test_arena.c: An arena hands out zeroed memory, releases it newest first together with its children, and turns a lack
+ * of memory into one message at the nearest boundary. */
 #include <stdint.h>
 #include <string.h>
 

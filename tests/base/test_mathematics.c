@@ -1,4 +1,5 @@
-/* test_mathematics.c: angles, smooth ramps, quadrature, boxes; products of wide.h. */
+/* test_mathematics.c: Tests the small functions of geometry and analysis (angles, smooth ramps, quadrature, boxes) and
+ * the wide products of wide.h against closed forms. */
 #include <math.h>
 
 #include "base/mathematics.h"

@@ -1,4 +1,5 @@
-/* test_methods.c: the table of integration methods, and the order conditions of the Runge-Kutta methods. */
+/* test_methods.c: The table of integration methods is complete, and each Runge-Kutta method meets the order conditions
+ * of its order. */
 #include "base/methods.h"
 #include "near.h"
 

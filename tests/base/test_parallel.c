@@ -1,4 +1,5 @@
-/* test_parallel.c: chunks cover an array; only long loops use several threads. */
+/* test_parallel.c: The chunks of a loop cover every element once, and only loops that are long enough use several
+ * threads. */
 #include <time.h>
 
 #include "base/parallel.h"

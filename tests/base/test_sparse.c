@@ -1,4 +1,5 @@
-/* test_sparse.c: record, replay, mask, forget. */
+/* test_sparse.c: A sparse matrix records its pattern in the first pass and replays it in later ones, masks rows, and
+ * forgets a pattern that no longer holds. */
 #include <stdlib.h>
 
 #include "base/sparse.h"

@@ -1,4 +1,5 @@
-/* test_status.c: the message of a thread, TRY, and the exit codes. */
+/* test_status.c: Each thread has its own error message, TRY passes an error on, and each status has the documented exit
+ * code. */
 #include <pthread.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* test_table.c: growing tables. */
+/* test_table.c: A printed table grows row by row, and its columns are aligned. */
 #include <math.h>
 
 #include "base/table.h"

@@ -1,4 +1,5 @@
-/* test_text.c: numbers as strings and back. */
+/* test_text.c: Numbers become text and are read back without a lost bit, and words are quoted as shells, JSON and
+ * tables of text need it. */
 #include <locale.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,5 @@
-/* test_actuation.c: the wave of natural curvature: doc/model.md, section 4. */
+/* test_actuation.c: The wave of natural curvature is the formula of doc/model.md, section 4, and its derivatives agree
+ * with differences. */
 #include <stdio.h>
 
 #include "base/mathematics.h"

@@ -1,4 +1,4 @@
-/* test_bending_mode.c: the slowest mode against the modes of uniform beams. */
+/* test_bending_mode.c: The slowest bending mode of a body is compared with the known modes of uniform beams. */
 #include <lapacke.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,5 @@
-/* test_clamp.c: the joint that holds a prescribed head: doc/model.md, section 2. */
+/* test_clamp.c: The joint that holds a prescribed head (doc/model.md, section 2) has the energy, the moment and the
+ * derivatives of the model. */
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -1,4 +1,4 @@
-/* test_edge.c: frame and motion of an edge: doc/model.md, section 2. */
+/* test_edge.c: The frame of an edge and its motion follow from its two nodes (doc/model.md, section 2). */
 #include "body/rod.h"
 #include "school.h"
 

@@ -1,4 +1,5 @@
-/* test_rod.c: energies, forces, damping and their derivatives: doc/model.md, sections 2 and 3. */
+/* test_rod.c: The forces of the rod are the gradient of its energy, its damping dissipates as much as the model says,
+ * and all derivatives agree with differences (doc/model.md, sections 2 and 3). */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

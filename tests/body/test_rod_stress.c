@@ -1,4 +1,5 @@
-/* test_rod_stress.c: stresses by the balance of momentum, and the resulting strains: doc/model.md, section 13. */
+/* test_rod_stress.c: In stiff bodies the stresses come from the balance of momentum. Their work and the strains that
+ * follow from them are tested here (doc/model.md, section 13). */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

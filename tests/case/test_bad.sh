@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Bad input: each wrong case leads to the expected message and exit code, and nothing else.
+# Each wrong case leads to the message and the exit code that it should, and to nothing else.
 #
 #   tests/case/test_bad.sh PROGRAM
 #

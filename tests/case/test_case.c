@@ -1,5 +1,5 @@
-/* test_case.c: defaults, presets, includes, assignments; and that a case shown reads back the same. Sweeps are tested
- * by test_sweep.c, wrong cases by test_bad.sh. */
+/* test_case.c: A case takes its values from defaults, presets, included files and assignments, and what is shown of it
+ * reads back as the same case. test_sweep.c tests sweeps, and test_bad.sh wrong cases. */
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
-/* test_case_check.c: implausible values are noted at their places, and no others; the default shedding interval, and
- * times that are rounded to it. */
+/* test_case_check.c: Implausible values are noted where they stand, and no others are. The default shedding interval
+ * follows from the beat, and times are rounded to it. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,4 +1,5 @@
-/* test_sweep.c: axes and their members, references, and the members that an expectation is about. */
+/* test_sweep.c: The axes of a sweep give its members, and references and expectations find the members that they are
+ * about. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,5 @@
-/* test_yaml.c: the tree of a source and its places, what is refused, and how values are written. */
+/* test_yaml.c: The tree that is read from YAML knows the place of every value, what the subset lacks is refused, and
+ * values that are written read back the same. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,5 @@
-/* test_clearance.c: bodies that touch, pass each other, or pass through each other between two steps. */
+/* test_clearance.c: Bodies that touch, pass each other or would pass through each other between two steps are found,
+ * with their distance. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
-/* test_contact.c: contact forces follow from an energy, and colliding bodies do not cross. Derivatives of the forces:
- * test_residual.c. */
+/* test_contact.c: Contact forces follow from an energy, and bodies that collide do not cross. test_residual.c tests the
+ * derivatives of these forces. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

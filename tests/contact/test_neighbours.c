@@ -1,4 +1,4 @@
-/* test_neighbours.c: the overlaps of boxes against a comparison of all pairs. */
+/* test_neighbours.c: The boxes that are found to overlap are those that a comparison of all pairs finds. */
 #include <stdlib.h>
 
 #include "contact/clearance.h"

@@ -1,5 +1,5 @@
-/* test_self_crossing.c: shapes that cross themselves by centre line, outline or a sharp bend; record of the first
- * crossing in a run. */
+/* test_self_crossing.c: A body that crosses itself by its centre line, its outline or a sharp bend is found, and a run
+ * remembers the first time. */
 #include <stdio.h>
 
 #include "contact/clearance.h"

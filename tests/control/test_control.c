@@ -1,4 +1,4 @@
-/* test_control.c: headings and the laws for the bias: doc/model.md, section 11. */
+/* test_control.c: Tests the heading of a fish and every control law (doc/model.md, section 11). */
 #include "base/mathematics.h"
 #include "control/control.h"
 #include "fish/fish_motion.h"

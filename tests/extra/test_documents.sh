@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Output of commands in README.md and doc/*.md is the output of these commands now, as far as they take seconds, within
-# what the tolerance of the solver allows; `make numbers` compares digits. scripts/documents.py finds output that is not.
+# The output of commands that README.md and doc/*.md show is what these commands print now, within what the tolerance of
+# the solver allows. Only commands that take seconds run here; `make numbers` runs all and compares digits. Output that
+# is wrong must be found by scripts/documents.py.
 #
 #   tests/extra/test_documents.sh PROGRAM
 # shellcheck source=tests/checks.sh

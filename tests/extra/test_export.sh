@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Files for other programs: VTK reads the files and finds the numbers of the result.
+# VTK reads the files that are written for other programs, and finds the numbers of the result in them.
 #
 #   tests/extra/test_export.sh PROGRAM
 # shellcheck source=tests/checks.sh

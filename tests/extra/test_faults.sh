@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Faults of the system and of the surroundings: a sample of failing calls (all of them: make soak), closed standard
-# files, closed pipes, signals that are ignored, threads and memory that are not there.
+# The program survives faults of the system around it: a sample of failing calls (`make soak` tries all of them), closed
+# standard files, closed pipes, ignored signals, and threads and memory that are not there.
 #
 #   tests/extra/test_faults.sh PROGRAM
 # shellcheck source=tests/checks.sh

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A thousand mutated cases, a thousand mutated files of runs, studies and fields, and a thousand mutated checkpoints:
-# from a fixed seed. More and new mutations: make fuzz.
+# A thousand mutated cases, a thousand mutated files of runs, studies and fields, and a thousand mutated checkpoints,
+# all from a fixed seed, do no harm. `make fuzz` tries more and new ones.
 #
 #   tests/extra/test_fuzz.sh PROGRAM
 # shellcheck source=tests/checks.sh

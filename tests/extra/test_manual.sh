@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Documents from the tables of the program: manual pages, completion, the schema of cases.
+# The documents that are made from the tables of the program (manual pages, completion, the schema of cases) agree with
+# these tables.
 #
 #   tests/extra/test_manual.sh PROGRAM
 # shellcheck source=tests/checks.sh

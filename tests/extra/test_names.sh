@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Names and links: shoal writes only regular files of its own and touches nothing else; no name is executed as a command.
+# The program writes only regular files of its own and touches nothing else, whatever names and links it meets, and
+# executes no name as a command.
 #
 #   tests/extra/test_names.sh PROGRAM
 # shellcheck source=tests/checks.sh

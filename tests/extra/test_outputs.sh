@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The outputs of every command: the messages, heads and key values of tests/data/outputs.txt occur in them.
+# The outputs of every command have the messages, heads and key values of tests/data/outputs.txt.
 #
 #   tests/extra/test_outputs.sh PROGRAM
 # shellcheck source=tests/checks.sh

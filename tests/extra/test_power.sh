@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Power cuts: a result without the last rows, and a sample of states after a cut at any time (1000 cuts: make soak).
+# After a power cut, a result without its last rows can be read and resumed. A sample of states after a cut at any time
+# is tried; `make soak` tries 1000 cuts.
 #
 #   tests/extra/test_power.sh PROGRAM
 # shellcheck source=tests/checks.sh

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Every study in cases/studies/ states what it expects, and meets it: those of less than 5 s, or with "long" the others.
+# Every study in cases/studies/ says what it expects, and meets it. Those of less than 5 s run, or with "long" the
+# others.
 #
 #   tests/extra/test_studies.sh PROGRAM [long]
 # shellcheck source=tests/checks.sh

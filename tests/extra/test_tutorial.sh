@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Every case, command and script of doc/tutorial.md works, in order, in an empty folder. Runs are shortened.
+# Every case, command and script of doc/tutorial.md works, in order, in an empty folder. The runs are shortened.
 #
 #   tests/extra/test_tutorial.sh PROGRAM
 # shellcheck source=tests/checks.sh

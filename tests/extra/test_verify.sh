@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The fast part of the checks against classical results (seconds). All checks: make verify.
+# Runs the fast part of the checks against classical results, which takes seconds. `make verify` runs all checks.
 #
 #   tests/extra/test_verify.sh PROGRAM
 #

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The page of a run: the numbers equal the result, and a browser draws the page without an error.
+# The numbers of the page of a run equal the result, and a browser draws the page without an error.
 #
 #   tests/extra/test_view.sh PROGRAM
 # shellcheck source=tests/checks.sh

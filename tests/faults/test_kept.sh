@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What is there stays: no command replaces its input, or a file of another program; what shoal wrote is replaced with
+# What is there stays. No command replaces its input or a file of another program, and what shoal wrote is replaced with
 # --force only, and only once the new file is whole.
 #
 #   tests/faults/test_kept.sh PROGRAM

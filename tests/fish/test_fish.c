@@ -1,4 +1,5 @@
-/* test_fish.c: shape, mass, stiffness, points and start of a fish: doc/model.md, sections 1, 3, 4, 5, 6. */
+/* test_fish.c: From its parameters a fish gets the shape, the masses, the stiffness, the points of its sheet and the
+ * start of doc/model.md, sections 1, 3, 4, 5 and 6. */
 #include <stdio.h>
 #include <string.h>
 

@@ -1,4 +1,5 @@
-/* test_fish_prescribed.c: the prescribed straight motion: doc/model.md, section 5. */
+/* test_fish_motion.c: A prescribed motion moves a straight body as doc/model.md, section 5, says, and its velocity and
+ * acceleration are exact derivatives. */
 #include "fish/fish_motion.h"
 #include "school.h"
 

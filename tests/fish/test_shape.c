@@ -1,4 +1,4 @@
-/* test_shape.c: points and tangents of the polygon and of the smooth curve: doc/model.md, section 6. */
+/* test_shape.c: Points and tangents on the polygon and on the smooth curve are those of doc/model.md, section 6. */
 #include "fish/shape.h"
 #include "near.h"
 #include "school.h"

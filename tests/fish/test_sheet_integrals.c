@@ -1,5 +1,5 @@
-/* test_sheet_integrals.c: circulation between vortices, and momentum, of sheets with known integrals: doc/model.md,
- * section 15. */
+/* test_sheet_integrals.c: The circulation between the vortices and the added momentum are compared with sheets whose
+ * integrals are known (doc/model.md, section 15). */
 #include <stdlib.h>
 
 #include "base/mathematics.h"

@@ -1,5 +1,5 @@
-/* test_flow.c: external flow; point vortices at every point; walls as mirrored fish; threads. doc/model.md, sections 6
- * to 9, 17. */
+/* test_flow.c: Every point feels the sources that doc/model.md, sections 6 to 9 and 17, name for it: the external flow,
+ * vortices, and walls, which act like mirrored fish. The number of threads changes no bit. */
 #include <stdio.h>
 #include <string.h>
 

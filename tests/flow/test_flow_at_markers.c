@@ -1,5 +1,5 @@
-/* test_flow_at_markers.c: conservation of the impulse of bodies and wakes
- * pair by pair. doc/model.md, section 8. */
+/* test_flow_at_markers.c: Pair by pair, the velocities of bodies and wakes conserve the impulse of the fluid
+ * (doc/model.md, section 8). */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

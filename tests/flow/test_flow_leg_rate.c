@@ -1,4 +1,4 @@
-/* test_flow_leg_rate.c: the momentum that the changing lengths of legs take: doc/model.md, section 18. */
+/* test_flow_leg_rate.c: Tests the momentum that legs take while their lengths change (doc/model.md, section 18). */
 #include <stdio.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
-/* test_flow_sources.c: velocity at points and at markers, source by source, for both kernels and a third. doc/model.md,
- * sections 6 to 9, 17, 18. */
+/* test_flow_sources.c: The velocity at points and at markers is the sum over the sources of doc/model.md, sections 6 to
+ * 9, 17 and 18, one by one, with both kernels of the program and with a third one. */
 #include <stdio.h>
 #include <string.h>
 

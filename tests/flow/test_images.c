@@ -1,4 +1,5 @@
-/* test_images.c: images in one wall and in a channel: theory, closed sums, sums over many images. */
+/* test_images.c: The images in one wall and in a channel are compared with theory, with sums in closed form, and with
+ * sums over many images. */
 #include <stdlib.h>
 #include <string.h>
 

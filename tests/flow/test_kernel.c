@@ -1,4 +1,5 @@
-/* test_kernel.c: the kernels against their formulas, limits, differences, and each other. */
+/* test_kernel.c: The kernels agree with their formulas and limits, their derivatives with differences, and their
+ * variants for different processors with each other. */
 #include <math.h>
 #include <string.h>
 

@@ -1,4 +1,5 @@
-/* test_others.c: distant sources by far points, against the sum of all sources. doc/numerics.md, section 12. */
+/* test_others.c: Velocities that come from distant sources through far points agree with the sum over all sources
+ * within the tolerance (doc/numerics.md, section 12). */
 #include <stdio.h>
 #include <string.h>
 

@@ -1,4 +1,4 @@
-/* test_tree.c: the tree against the direct sum. */
+/* test_tree.c: Velocities that the tree sums agree with the direct sum within the tolerance. */
 #include <stdlib.h>
 #include <string.h>
 

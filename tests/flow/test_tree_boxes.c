@@ -1,4 +1,4 @@
-/* test_tree_boxes.c: circles of boxes, threads. */
+/* test_tree_boxes.c: Any number of threads sorts the points of the tree into the same boxes. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,5 +1,6 @@
-/* test_bound_sheet.c: impermeability, Kelvin, Kutta; flat plate and circular arc in closed form. doc/model.md, sections
- * 6, 7 and 12. */
+/* test_bound_sheet.c: The strength of the bound sheet satisfies impermeability, Kelvin's theorem and the Kutta
+ * condition, and agrees with the closed forms for a flat plate and a circular arc (doc/model.md, sections 6, 7 and 12).
+ * */
 #include <stdio.h>
 
 #include "flow/flow_at_bodies.h"

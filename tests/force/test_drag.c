@@ -1,4 +1,5 @@
-/* test_drag.c: drag on an edge, and moment of the drag caused by the flow. doc/model.md, sections 9 and 11. */
+/* test_drag.c: Tests the drag on an edge, and the moment of that part of the drag which the flow causes (doc/model.md,
+ * sections 9 and 11). */
 #include <stdio.h>
 
 #include "flow/flow_at_bodies.h"

@@ -1,4 +1,4 @@
-/* test_edge_force.c: the forces of the fluid on the nodes: doc/model.md, section 9. */
+/* test_edge_force.c: The forces of the fluid on an edge arrive at its two nodes as doc/model.md, section 9, says. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

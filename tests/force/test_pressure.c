@@ -1,5 +1,5 @@
-/* test_pressure.c: added mass, impulses, and force of the pressure. doc/model.md, section 15. test_residual.c compares
- * the Jacobian with differences. */
+/* test_pressure.c: Tests the added mass, the impulses and the force of the pressure (doc/model.md, section 15).
+ * test_residual.c compares their derivatives with differences. */
 #include <lapacke.h>
 #include <stdio.h>
 #include <stdlib.h>

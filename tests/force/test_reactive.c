@@ -1,4 +1,4 @@
-/* test_reactive.c: reactive force on a body. doc/model.md, section 9. */
+/* test_reactive.c: Tests the reactive force on a body (doc/model.md, section 9). */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,5 @@
-/* Tests of src/force/sensor_pressure.c: pressure on both sides of a body at the sensors. */
+/* test_sensor_pressure.c: The sensors have the pressure of potential theory on both sides of a body (doc/model.md,
+ * section 15). */
 #include <stdio.h>
 
 #include "force/pressure.h"

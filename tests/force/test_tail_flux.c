@@ -1,4 +1,4 @@
-/* test_tail_flux.c: force of the momentum flux at the tail. doc/model.md, section 9. */
+/* test_tail_flux.c: Tests the force that the momentum leaving at the tail exerts (doc/model.md, section 9). */
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -1,4 +1,5 @@
-/* Tests of src/force/thwaites.c: Thwaites' method on known flows, and the friction on the sides of plates. */
+/* test_thwaites.c: Thwaites' method agrees with flows whose boundary layers are known, and with the friction on the
+ * sides of plates (doc/model.md, section 9). */
 #include <math.h>
 #include <stdio.h>
 

@@ -1,5 +1,5 @@
-/* fuzz.h: what a fuzz target is: one input, which must do no harm. Driven by tests/fuzz/driver.c or, with clang, by
- * libFuzzer, whose names these are. */
+/* fuzz.h: A fuzz target takes one input, which must do no harm. tests/fuzz/driver.c calls it or, with clang, libFuzzer,
+ * whose names these are. */
 #ifndef FUZZ_H
 #define FUZZ_H
 

@@ -1,4 +1,5 @@
-/* fuzz_case.c: any text as a case file: it is refused with a place, or shown, and what is shown shows itself. */
+/* fuzz_case.c: Any text is tried as a case file. It is either refused with a place, or shown, and what is shown must
+ * show itself. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
-/* fuzz_checkpoint.c: any bytes as a checkpoint: it is refused, or read into the state of the case in it. Few changes
- * get past the checksums, so every input is tried a second time with checksums that fit. */
+/* fuzz_checkpoint.c: Any bytes are tried as a checkpoint. They are either refused or read into the state of the case in
+ * them. Few changes get past the checksums, so every input is tried a second time with checksums that fit. */
 #include <string.h>
 #include <zlib.h>
 

@@ -1,4 +1,4 @@
-/* fuzz_result.c: any bytes as the file of a run, a study or a field: all that reads such files reads this one. */
+/* fuzz_result.c: Any bytes are tried as the file of a run, a study or a field, by everything that reads such files. */
 #include "fuzz.h"
 #include "result/result_info.h"
 #include "result/result_kind.h"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Make a folder with the seeds of the fuzz targets: cases/, results/ (a run, a study, a member, a field), checkpoints/;
-# all small.
+# Makes a folder with the seeds of the fuzz targets, all of them small: cases/, results/ (a run, a study, a member, a
+# field) and checkpoints/.
 #
 #   tests/fuzz/seeds.sh PROGRAM FOLDER
 set -euo pipefail

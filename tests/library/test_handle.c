@@ -1,4 +1,5 @@
-/* test_handle.c: fish that are set from outside while they swim. */
+/* test_handle.c: A program that uses the library sets the beat, the course and the place of a fish while it swims
+ * (doc/python.md, section 2). */
 #include <stdio.h>
 #include <string.h>
 

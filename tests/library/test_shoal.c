@@ -1,4 +1,5 @@
-/* test_shoal.c: every function of shoal.h, with the same bits as the internal simulation. */
+/* test_shoal.c: Every function of shoal.h is called, and a run through the library has the same bits as the simulation
+ * inside the program. */
 #include <limits.h>
 #include <pthread.h>
 #include <signal.h>

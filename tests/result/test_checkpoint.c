@@ -1,4 +1,4 @@
-/* test_checkpoint.c: what is written is read, and whatever is not whole is refused. */
+/* test_checkpoint.c: A checkpoint that was written is read back, and one that is damaged in any way is refused. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* test_durable.c: a file is replaced as a whole, and the one before it is kept. */
+/* test_durable.c: A file is replaced as a whole, and the file before it is kept until then. */
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>

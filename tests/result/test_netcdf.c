@@ -1,4 +1,5 @@
-/* test_netcdf.c: NetCDF files: the sequence of renaming, and that foreign files do no harm. */
+/* test_netcdf.c: NetCDF files are written and renamed in an order that survives a crash, and damaged or foreign files
+ * do no harm. */
 #include <fcntl.h>
 #include <netcdf.h>
 #include <stdint.h>

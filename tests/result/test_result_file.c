@@ -1,4 +1,5 @@
-/* test_result_file.c: writing a result: what is in it, when it can be read, and how it fails. */
+/* test_result_file.c: Tests what a result file contains, from when on it can be read, and what happens if it cannot be
+ * written. */
 #include <klu.h>
 #include <signal.h>
 #include <stdio.h>

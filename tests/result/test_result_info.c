@@ -1,4 +1,4 @@
-/* test_result_info.c: the summary of a result, the list of its variables, and the version it names. */
+/* test_result_info.c: Tests the summary of a result, the list of its variables, and the version that it names. */
 #include <sys/stat.h>
 
 #include "base/version.h"

@@ -1,4 +1,5 @@
-/* test_result_mark.c: rows are marked, found again, cut and continued, and no other rows pass for them. */
+/* test_result_mark.c: The rows of a result are marked, so that a run that is resumed finds them, cuts what comes after
+ * them and continues. Other rows are refused. */
 #include "result/netcdf.h"
 #include "result/result_file.h"
 #include "result_fixture.h"

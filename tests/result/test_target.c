@@ -1,4 +1,4 @@
-/* test_target.c: which files are recognised as those of shoal, and which places are refused. */
+/* test_target.c: The program recognises its own files, and refuses places at which it must not write. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* test_checkpoints.c: names of checkpoints, and events with a checkpoint. */
+/* test_checkpoints.c: Tests the names of checkpoints, and at which events they are written. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* test_estimate.c: what a run will take, from a few events and from wakes that are made up. */
+/* test_estimate.c: The time and the memory of a run are estimated from a few events and from wakes that are made up. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* test_event.c: events at the times t_n = n Dt: doc/model.md, sections 7, 8 and 11. */
+/* test_event.c: Tests what happens at the events t_n = n Dt, in its order (doc/model.md, sections 7, 8 and 11). */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

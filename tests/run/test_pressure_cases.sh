@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# 36 random schools with the pressure force, each for a fifth of a beat; `make soak` runs 500 schools.
+# 36 random schools with the force of the pressure run for a fifth of a beat each, and none fails. `make soak` runs 500
+# schools.
 #
 #   tests/run/test_pressure_cases.sh PROGRAM
 set -euo pipefail

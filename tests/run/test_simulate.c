@@ -1,4 +1,4 @@
-/* test_simulate.c: whole short runs: symmetries of the model, events, failures, result files. */
+/* test_simulate.c: Short runs of the whole program have the symmetries of the model, and end or fail as they should. */
 #include <netcdf.h>
 #include <stdio.h>
 #include <stdlib.h>

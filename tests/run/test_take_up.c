@@ -1,5 +1,5 @@
-/* test_take_up.c: a run created from state and totals alone continues with the bits of the run that was renewed at the
- * same event, for every method and every part of the state. */
+/* test_take_up.c: A run that is created from state and totals alone continues with the bits of the run that was renewed
+ * at the same event, for every method and every part of the state. */
 #include <stdio.h>
 
 #include "fish/fish_school.h"

@@ -1,4 +1,4 @@
-/* test_threads.c: runs with several threads have the bits of a run with one thread, in the whole state and the
+/* test_threads.c: A run with several threads has the bits of a run with one thread, in the whole state and in the
  * totals. */
 #include <stdio.h>
 #include <string.h>

@@ -1,4 +1,5 @@
-/* test_diagnostics.c: derived quantities of a state, and energy balances: doc/model.md, section 13. */
+/* test_diagnostics.c: Tests the quantities that are derived from a state, and the energy balances (doc/model.md,
+ * section 13). */
 #include <stdio.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
-/* test_diagnostics_momentum.c: the impulse of the fluid, and the balance of momentum with every external force:
- * doc/model.md, section 13. */
+/* test_diagnostics_momentum.c: Tests the impulse of the fluid, and that the balance of momentum closes with every
+ * external force (doc/model.md, section 13). */
 #include <stdio.h>
 
 #include "run/event.h"

@@ -1,4 +1,5 @@
-/* test_jacobian.c: the blocks of the Jacobian: coupled pairs, products with a vector, threads. */
+/* test_jacobian.c: Tests the Jacobian as a matrix of blocks: the pairs that are coupled, products with a vector, and
+ * threads. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,4 +1,5 @@
-/* test_residual.c: the Jacobian of the whole school against differences, for every option of the model. */
+/* test_residual.c: The Jacobian of a whole school agrees with differences of the residual, for every option of the
+ * model. */
 #include <stdlib.h>
 #include <string.h>
 

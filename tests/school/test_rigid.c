@@ -1,4 +1,5 @@
-/* test_rigid.c: rigid_of returns the increments of rigid_change; shape and wake are conserved. */
+/* test_rigid.c: rigid_of returns the increments that rigid_change made, which leave the shape and the wake as they are.
+ * */
 #include <string.h>
 
 #include "school.h"

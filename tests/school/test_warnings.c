@@ -1,4 +1,4 @@
-/* test_warnings.c: each warning appears for cases with the defect, and only for these. */
+/* test_warnings.c: Each warning appears for cases that have the defect, and for no others. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A result of a million rows (1.3 GB): a run writes and resumes the result, and every reader reads the file. Ten minutes.
+# A run writes and resumes a result of a million rows (1.3 GB), and every reader reads the file. This takes ten minutes.
 #
 #   tests/soak/million_rows.sh PROGRAM
 # shellcheck source=tests/checks.sh

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The studies of cases/studies that take 10 s to half an hour: each study meets the stated expectations.
+# The studies of cases/studies that take 10 s to half an hour meet what they expect.
 #
 #   tests/soak/studies.sh PROGRAM
 exec "$(dirname "$0")/../extra/test_studies.sh" "$1" long

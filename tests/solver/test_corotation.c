@@ -1,4 +1,4 @@
-/* test_corotation.c: invariants of a vector field on a body under the map from one configuration to another. */
+/* test_corotation.c: The map from one configuration of a body to another keeps the invariants of a vector field. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,4 +1,4 @@
-/* test_dense_factors.c: solutions of full systems, pivots, singular matrices. */
+/* test_dense_factors.c: Full systems are solved with pivots, and singular ones are found. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

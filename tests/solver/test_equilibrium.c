@@ -1,5 +1,5 @@
-/* test_equilibrium.c: bodies at rest in a stream: the total force vanishes, and the stiffness agrees with differences.
- * doc/steady.md, "Without a beat". */
+/* test_equilibrium.c: At the equilibrium of a body in a stream the total force vanishes, and the stiffness agrees with
+ * differences (doc/steady.md, "Equilibria without a beat"). */
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -1,4 +1,4 @@
-/* test_ida.c: steps, restarts, failures. */
+/* test_ida.c: Tests the steps of IDA: how they divide an interval, how they restart after a jump, and how they fail. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

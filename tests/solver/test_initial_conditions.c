@@ -1,4 +1,5 @@
-/* test_initial_conditions.c: the algebraic unknowns follow from the differential ones. doc/model.md, section 10. */
+/* test_initial_conditions.c: The algebraic unknowns follow from the differential ones, which stay as they are
+ * (doc/model.md, section 10). */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

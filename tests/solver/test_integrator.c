@@ -1,4 +1,5 @@
-/* test_integrator.c: rates by differences: exact for parabolas, and of the fish that need them only. */
+/* test_integrator.c: The rates that an integrator computes from differences are exact for parabolas, and only fish that
+ * need them have them. */
 #include <stdio.h>
 
 #include "school.h"

@@ -1,4 +1,5 @@
-/* test_linear.c: linear systems with the Jacobian of a school: factors of blocks, coupled fish, threads, failures. */
+/* test_linear.c: Linear systems with the Jacobian of a school are solved by blocks or as a whole, with coupled fish,
+ * any number of threads, and matrices that are nearly singular. */
 #include <float.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,5 @@
-/* test_newton.c: Newton's method on a few equations that count what they cost. */
+/* test_newton.c: Newton's method for steady states is run on a few equations that count how often they are evaluated.
+ * */
 #include <string.h>
 
 #include "school.h"

@@ -1,4 +1,4 @@
-/* test_ode_rhs.c: the algebraic unknowns and the rates of every option. */
+/* test_ode_rhs.c: With every option, the algebraic unknowns that an explicit method computes satisfy all equations. */
 #include <string.h>
 
 #include "school.h"

@@ -1,4 +1,4 @@
-/* test_one_step.c: order, agreement with the other methods, counts, failures. */
+/* test_one_step.c: The methods of fixed step have their orders, agree with IDA, and say when they fail. */
 
 #include <stdio.h>
 #include <string.h>

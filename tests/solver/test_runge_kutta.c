@@ -1,4 +1,5 @@
-/* test_runge_kutta.c: order, agreement with IDA, restarts, failures. */
+/* test_runge_kutta.c: The explicit methods have their orders, agree with IDA, restart after a jump, and say when they
+ * fail. */
 #include <stdio.h>
 #include <string.h>
 

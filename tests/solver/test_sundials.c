@@ -1,5 +1,5 @@
-/* test_sundials.c: vectors against the serial ones of SUNDIALS, bit by bit, with any number of threads; clones
- * without memory; messages. */
+/* test_sundials.c: The threaded vectors have the bits of the serial vectors of SUNDIALS with any number of threads, a
+ * clone without memory is reported, and messages of SUNDIALS arrive. */
 #include <math.h>
 #include <string.h>
 

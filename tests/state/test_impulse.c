@@ -1,4 +1,4 @@
-/* test_impulse.c: moments of vortices, and booking of lost moments: doc/model.md, section 13. */
+/* test_impulse.c: Tests the impulse of the vortices, and that what they lose is booked (doc/model.md, section 13). */
 #include <stdio.h>
 
 #include "school.h"

@@ -1,4 +1,5 @@
-/* test_state.c: the state before the start, histories of samples, rates at events. */
+/* test_state.c: Tests the state before the start, its histories of samples and the rates at events, and that every
+ * field is a row of the table of checkpoints. */
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>

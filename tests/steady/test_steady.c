@@ -1,5 +1,5 @@
-/* test_steady.c: the search for a steady state: agreement with a long run, rate of convergence, and refusal of cases
- * without a steady state, with the reason. doc/steady.md. */
+/* test_steady.c: The search for a steady state agrees with a long run, converges at the expected rate, and refuses
+ * cases without a steady state with the reason (doc/steady.md). */
 #include <stdio.h>
 #include <string.h>
 

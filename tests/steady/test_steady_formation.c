@@ -1,4 +1,4 @@
-/* test_steady_formation.c: stable places of fish in a formation. doc/steady.md. */
+/* test_steady_formation.c: Tests the search for the places at which fish form a stable formation (doc/steady.md). */
 #include "steady/steady_search.h"
 #include "steady_setup.h"
 

@@ -1,5 +1,6 @@
-/* test_steady_modes.c: growth and decay of small disturbances of bodies without a beat: agreement with beams in vacuum
- * and with a run, independence of the stream direction. Flutter thresholds: section "elastic" of `make verify`. */
+/* test_steady_modes.c: The growth of small disturbances of bodies without a beat agrees with beams in vacuum and with a
+ * run, and does not depend on the direction of the stream. `make verify`, section "elastic", has the thresholds of
+ * flutter. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* test_steady_start.c: places and shapes of a file that a search starts from, in the frame of the case. */
+/* test_steady_start.c: A search that starts from a file takes places and shapes from it, in the frame of the case. */
 #include <netcdf.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/* test_steady_static.c: the equilibrium of bodies without a beat: agreement with a run, largest stream with an
- * equilibrium, and refused cases, with the reason. doc/steady.md, "Without a beat". */
+/* test_steady_static.c: The equilibrium of a body without a beat agrees with a run, ends at the largest stream that has
+ * one, and is refused with a reason where there is none (doc/steady.md, "Equilibria without a beat"). */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

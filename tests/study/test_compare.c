@@ -1,5 +1,4 @@
-/* test_compare.c: the table of a comparison, and comparisons without memory. What processes do:
- * test_compare_command.sh. */
+/* test_compare.c: Tests the table of a comparison of methods. test_compare_command.sh tests what its processes do. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

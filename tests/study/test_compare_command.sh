@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Comparing methods: content of a row, early ends, and wrong input.
+# `shoal compare` prints what each method cost and how wrong it was, goes on when a run ends early, and refuses wrong
+# input.
 #
 #   tests/study/test_compare_command.sh PROGRAM
 # shellcheck source=tests/checks.sh

@@ -1,5 +1,5 @@
-/* test_convergence.c: errors of a value by levels of refinement. The sequences are steady speeds [m s-1] and costs of
- * transport [m s-2] of the default fish, measured with several forms of the tail. */
+/* test_convergence.c: Tests the rule that finds the error of a value from its levels. The sequences are steady speeds
+ * [m s-1] and costs of transport [m s-2] of the default fish, measured with several forms of the tail. */
 #include <math.h>
 #include <string.h>
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Error bars on the command line: plans, budgets, refinement, and gathering from the files of members.
+# `shoal error` plans its members, prints the budget of an error bar, refines, and gathers the same from the files of
+# the members.
 #
 #   tests/study/test_error.sh PROGRAM
 # shellcheck source=tests/checks.sh

@@ -1,5 +1,5 @@
-/* test_error_study.c: the plan of an error study, and the judgement of members with values by formulas. With real
- * members: test_error.sh. */
+/* test_error_plan.c: Tests the plan of an error study, and how it judges members whose values are given by formulas.
+ * test_error.sh has real members. */
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>

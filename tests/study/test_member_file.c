@@ -1,4 +1,4 @@
-/* test_member_file.c: the end of a member of a study, and what is computed from its rows. */
+/* test_member_file.c: Tests what the last row of a member says, and what is computed from all its rows. */
 #include "crafted_file.h"
 #include "result_fixture.h"
 #include "study/member_file.h"

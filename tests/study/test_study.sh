@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Studies: members, skipped and repeated members, and behaviour after crashes.
+# A study runs its members, skips those that are finished and repeats those that are not, also after a crash.
 #
 #   tests/study/test_study.sh PROGRAM
 # shellcheck source=tests/checks.sh

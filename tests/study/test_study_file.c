@@ -1,5 +1,5 @@
-/* test_study_file.c: observed orders, extrapolated values and errors in study.nc; tables. What
- * processes do: test_study.sh. */
+/* test_study_file.c: Tests the orders, extrapolated values and errors in study.nc, and their tables. test_study.sh
+ * tests what the processes of a study do. */
 #include <netcdf.h>
 #include <stdio.h>
 #include <stdlib.h>

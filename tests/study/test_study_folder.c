@@ -1,4 +1,4 @@
-/* test_study_folder.c: the members that have to run, for every state of the folder. */
+/* test_study_folder.c: For every state in which the folder of a study can be, the right members run again. */
 #include <stdlib.h>
 #include <sys/stat.h>
 

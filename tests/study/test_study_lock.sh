@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Two studies in one folder: both may run different members, and never the same member.
+# Two studies in one folder may run different members at the same time, but never the same member.
 #
 #   tests/study/test_study_lock.sh PROGRAM
 # shellcheck source=tests/checks.sh

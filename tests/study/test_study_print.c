@@ -1,4 +1,5 @@
-/* test_study_print.c: expectations on the results of members: the bounds that are met, and the printed text. */
+/* test_study_print.c: Tests which bounds of the expectations are met by the results of members, and the text that says
+ * so. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

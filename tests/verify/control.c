@@ -1,5 +1,6 @@
-/* control.c: the section "control" (model.md 11): control laws of soft and stiff bodies, against an explicit method
- * with steps that resolve every vibration; a fish that swims to waypoints, and a fish that holds a course in a wake. */
+/* control.c: The section "control" (model.md 11) compares the control laws of soft and stiff bodies with an explicit
+ * method whose steps resolve every vibration. It also has a fish that swims to waypoints and one that holds its course
+ * in a wake. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

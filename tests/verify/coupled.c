@@ -1,6 +1,6 @@
-/* coupled.c: the section "coupled": bodies under the pressure of the bound sheet: the added mass of a plate, the
- * impulse of a sudden stream, and fish that swim, alone and one behind the other. Length L, density of the fluid and
- * span 1. */
+/* coupled.c: The section "coupled" has bodies under the pressure of the bound sheet: the added mass of a plate, the
+ * impulse of a sudden stream, and fish that swim alone and one behind the other. Length L, density of the fluid and
+ * span are 1. */
 #include <lapacke.h>
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
-/* depth.c: the section "depth": sheets of finite span (doc/model.md, section 18) between the slender body and two
- * dimensions. Length L = 1 m, density 1. */
+/* depth.c: The section "depth" compares sheets of finite span (doc/model.md, section 18) with their limits, the slender
+ * body and two-dimensional flow, and with lifting surfaces between them. Length L = 1 m, density 1. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

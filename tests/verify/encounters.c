@@ -1,5 +1,6 @@
-/* encounters.c: the section "encounters": plates in gusts that travel with the stream, vortex streets, and plates in
- * vortex streets, against linear theory and von Karman. Length L, speed and density of the fluid 1 and span 1 m. */
+/* encounters.c: The section "encounters" compares plates in gusts that travel with the stream, vortex streets, and
+ * plates in vortex streets with linear theory and von Karman. Length L, speed and density of the fluid are 1, the span
+ * is 1 m. */
 #include <complex.h>
 #include <math.h>
 #include <stdio.h>

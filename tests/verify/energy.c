@@ -1,6 +1,6 @@
-/* energy.c: the section "energy": the energy balance accounts for the work of the muscle. The balance is the energy
- * less the initial energy less all work since the start; the error comes from the integrator and from the quadrature of
- * powers over the steps. */
+/* energy.c: The section "energy" shows that the energy balance accounts for the work of the muscle. The balance is the
+ * energy less the initial energy less all work since the start; its error comes from the integrator and from the
+ * quadrature of powers over the steps. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

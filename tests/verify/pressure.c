@@ -1,5 +1,5 @@
-/* pressure.c: the section "pressure": forces from the bound sheet (force: pressure) against the linear theory of thin
- * foils. Length L, speed and density of the fluid 1 and span 1 m unless stated. */
+/* pressure.c: The section "pressure" compares the forces of the bound sheet (force: pressure) with the linear theory of
+ * thin foils. Length L, speed and density of the fluid are 1 and the span is 1 m unless stated. */
 #include <complex.h>
 #include <math.h>
 #include <stdio.h>

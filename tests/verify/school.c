@@ -1,5 +1,5 @@
-/* school.c: everything together, the whole coupled school: order in the shedding interval, in the nodes of the body and
- * in the points of the sheet, error against tolerance, and the implicit solution against an explicit one. */
+/* school.c: The whole coupled school, compared with itself: order in the shedding interval, in the nodes of the body
+ * and in the points of the sheet, error against tolerance, and the implicit solution against an explicit one. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,6 @@
-/* skin.c: the section "skin" (model.md 9 and 15): pressure on both sides of a plate at sensors, against potential
- * theory without common code with the program; friction on both sides. Length L, speed and density of the fluid 1. */
+/* skin.c: The section "skin" (model.md 9 and 15) compares the pressure on both sides of a plate, at sensors, with
+ * potential theory that shares no code with the program, and tests the friction on both sides. Length L, speed and
+ * density of the fluid are 1. */
 #include <complex.h>
 #include <math.h>
 

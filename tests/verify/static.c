@@ -1,5 +1,6 @@
-/* static.c: the section "static" (doc/steady.md, "Without a beat"): foils and plates at rest in a stream against thin
- * airfoils, Euler's column and the elastica, by solvers of our own, and against runs. Density, length, span are 1. */
+/* static.c: The section "static" (doc/steady.md, "Equilibria without a beat") compares foils and plates at rest in a
+ * stream with thin airfoils, Euler's column and the elastica, which have solvers of their own here, and with runs.
+ * Density, length and span are 1. */
 #include <lapacke.h>
 #include <math.h>
 

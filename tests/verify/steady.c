@@ -1,5 +1,5 @@
-/* steady.c: the section "steady" (doc/steady.md): results of `shoal steady` after some twenty beats against runs of two
- * hundred beats. */
+/* steady.c: The section "steady" (doc/steady.md) compares results of `shoal steady` after some twenty beats with runs
+ * of two hundred beats. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/* symmetry.c: the motion is invariant to position and rotation of the school, the order of the fish, the interval of
- * output and the number of threads. */
+/* symmetry.c: The motion does not depend on the position and the rotation of the school, the order of the fish, the
+ * interval of output or the number of threads. */
 #include <math.h>
 #include <netcdf.h>
 #include <stdio.h>

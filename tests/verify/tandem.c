@@ -1,5 +1,5 @@
-/* tandem.c: the section "tandem": a heaving plate in the wake of another plate: the equilibrium positions of `shoal
- * steady` (doc/steady.md) against published positions and against the linear theory of thin foils. */
+/* tandem.c: The section "tandem" has a heaving plate in the wake of another one. It compares the equilibrium positions
+ * that `shoal steady` finds (doc/steady.md) with published positions and with the linear theory of thin foils. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

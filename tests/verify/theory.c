@@ -1,5 +1,5 @@
-/* theory.c: the section "theory": the solvers of linear_theory.h against published values, limits in closed form, and
- * each other. The numbers used by other sections are shown. */
+/* theory.c: The section "theory" compares the solvers of linear_theory.h with published values, limits in closed form,
+ * and each other. It prints the numbers that other sections use. */
 #include <complex.h>
 #include <math.h>
 

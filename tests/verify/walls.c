@@ -1,5 +1,5 @@
-/* walls.c: the section "walls": bodies and wakes beside straight walls, against thin-foil theory between two walls and
- * against the same bodies beside mirror images. Length L = 1 m. */
+/* walls.c: The section "walls" compares bodies and wakes beside straight walls with thin-foil theory between two walls
+ * and with the same bodies beside mirror images. Length L = 1 m. */
 #include <math.h>
 
 #include "force/bound_sheet.h"

@@ -1,5 +1,5 @@
-/* test_field_file.c: the flow of a row of a result file against that of the run itself, against a sum of its own, and
- * its file. Also tests field_row and flow_field. */
+/* test_field_file.c: The flow around a row of a result file agrees with that of the run itself and with a sum of its
+ * own. Also tests field_row and flow_field. */
 #include <math.h>
 #include <stdlib.h>
 

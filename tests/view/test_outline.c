@@ -1,4 +1,4 @@
-/* test_outline.c: the outline of bodies whose shape is known. */
+/* test_outline.c: Tests the outline of bodies whose shape is known. */
 #include <math.h>
 #include <string.h>
 

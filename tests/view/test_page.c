@@ -1,5 +1,5 @@
-/* test_page.c: the page of a result, and the reader of results under it. What the page shows is tested by
- * tests/extra/test_view.sh. */
+/* test_page.c: Tests the page of a result, and the reader of results under it. tests/extra/test_view.sh tests what a
+ * browser shows of it. */
 #include <sys/stat.h>
 
 #include "crafted_file.h"

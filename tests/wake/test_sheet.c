@@ -1,4 +1,5 @@
-/* test_sheet.c: markers, stretches, and the views of a wake. doc/model.md, sections 7, 8 and 18. */
+/* test_sheet.c: Tests the markers and stretches of a free sheet, and the sources that bodies, markers and other fish
+ * see of it (doc/model.md, sections 7, 8 and 18). */
 #include <stdio.h>
 #include <string.h>
 

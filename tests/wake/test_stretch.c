@@ -1,5 +1,5 @@
-/* test_stretch.c: the form of old stretches, and dropping of markers. doc/model.md, section 7; doc/numerics.md, section
- * 13. */
+/* test_stretch.c: Tests the form of old stretches, and that dropping markers hardly changes a run (doc/model.md,
+ * section 7; doc/numerics.md, section 13). */
 #include <stdio.h>
 
 #include "run/simulate.h"

@@ -1,4 +1,5 @@
-/* test_wake.c: queue of free vortices. doc/model.md, sections 7 and 8. */
+/* test_wake.c: Tests the queue of free vortices: how it grows, moves, decays and loses its oldest ones (doc/model.md,
+ * sections 7 and 8). */
 #include <string.h>
 
 #include "base/mathematics.h"
