@@ -43,14 +43,14 @@ struct targets kernel_targets(int n, const double *x, const double *y, double *c
     return (struct targets){.n = n,
                             .x = x,
                             .y = y,
-                            .u = sum[0],
-                            .v = sum[1],
-                            .div = sum[2],
-                            .u_x = sum[3],
-                            .u_y = sum[4],
-                            .v_x = sum[5],
-                            .div_x = sum[6],
-                            .div_y = sum[7]};
+                            .u = sum[KERNEL_U],
+                            .v = sum[KERNEL_V],
+                            .div = sum[KERNEL_DIV],
+                            .u_x = sum[KERNEL_U_X],
+                            .u_y = sum[KERNEL_U_Y],
+                            .v_x = sum[KERNEL_V_X],
+                            .div_x = sum[KERNEL_DIV_X],
+                            .div_y = sum[KERNEL_DIV_Y]};
 }
 
 // ---- velocity, divergence and gradients
@@ -222,8 +222,14 @@ void kernel_induce(const struct kernel_pair *pair, const struct sources *sources
 // So many sources form a tile: their sums, five times HALF numbers for each, fit into the first cache.
 enum { TILE = 2 * KERNEL_BLOCK };
 
-static double sum_of_lanes(const double *value) {
-    return ((value[0] + value[4]) + (value[2] + value[6])) + ((value[1] + value[5]) + (value[3] + value[7]));
+// the sum of a block_lanes array, which adds one half to the other until one number is left
+static double sum_of_lanes(const double value[HALF]) {
+    double sum[HALF];
+    memcpy(sum, value, sizeof sum);
+    for (int n = HALF / 2; n > 0; n /= 2) {
+        for (int i = 0; i < n; i++) sum[i] += sum[i + n];
+    }
+    return sum[0];
 }
 
 void kernel_induce_mutual(const struct kernel_pair *pair, const struct sources *one, const struct targets *at_one,

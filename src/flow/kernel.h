@@ -44,9 +44,21 @@ struct targets {
 };
 struct targets kernel_targets_part(const struct targets *all, struct range which);
 
-/* Make targets of n places, with the sums u, v, div, u_x, u_y, v_x, div_x, div_y in this order, and without half, leg
- * and square. */
-enum { KERNEL_SUMS = 8 };
+/* The sums at targets as a list of arrays: the velocity and its divergence, then the gradients of both. */
+enum kernel_sum {
+    KERNEL_U,
+    KERNEL_V,
+    KERNEL_DIV,
+    KERNEL_U_X,
+    KERNEL_U_Y,
+    KERNEL_V_X,
+    KERNEL_DIV_X,
+    KERNEL_DIV_Y,
+    KERNEL_SUMS,
+    KERNEL_SUMS_WITHOUT_GRADIENT = KERNEL_U_X
+};
+
+/* Make targets of n places with these sums, and without half, leg and square. */
 struct targets kernel_targets(int n, const double *x, const double *y, double *const sum[KERNEL_SUMS]);
 
 /* What is constant over all pairs of a sum. span: b in front of the kernel, m (infinite span: 1); factor: of both

@@ -78,9 +78,14 @@ struct others {
 };
 
 static void field_list(struct far_field *field, double *sum[KERNEL_SUMS]) {
-    double *const all[KERNEL_SUMS] = {field->u,   field->v,   field->div,   field->u_x,
-                                      field->u_y, field->v_x, field->div_x, field->div_y};
-    memcpy(sum, all, sizeof all);
+    sum[KERNEL_U] = field->u;
+    sum[KERNEL_V] = field->v;
+    sum[KERNEL_DIV] = field->div;
+    sum[KERNEL_U_X] = field->u_x;
+    sum[KERNEL_U_Y] = field->u_y;
+    sum[KERNEL_V_X] = field->v_x;
+    sum[KERNEL_DIV_X] = field->div_x;
+    sum[KERNEL_DIV_Y] = field->div_y;
 }
 
 // ---- far points

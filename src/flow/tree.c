@@ -528,7 +528,9 @@ static void pair_induce(const struct tree *tree, const struct kernel_pair *with,
     if (pair->to[0] == 0) {
         const int first = to_points->first;
         double *sum[KERNEL_SUMS];
-        for (int i = 0; i < KERNEL_SUMS; i++) sum[i] = i < 3 || with_gradient ? tree->sum[i] + first : NULL;
+        for (int i = 0; i < KERNEL_SUMS; i++) {
+            sum[i] = i < KERNEL_SUMS_WITHOUT_GRADIENT || with_gradient ? tree->sum[i] + first : NULL;
+        }
         struct targets at = kernel_targets(to_points->n, tree->x + first, tree->y + first, sum);
         at.leg = tree->h + first;
         kernel_induce(with, &rings, which, &at);
@@ -637,10 +639,10 @@ static void targets_sort(struct tree *tree, const struct kernel_pair *pair, cons
     const size_t size = (size_t)at->n * sizeof(double);
     if (at->n > tree->target_capacity) {
         tree->target_capacity = at->n + at->n / 2;
-        double **const all[] = {&tree->x,      &tree->y,      &tree->h,      &tree->sum[0],
-                                &tree->sum[1], &tree->sum[2], &tree->sum[3], &tree->sum[4],
-                                &tree->sum[5], &tree->sum[6], &tree->sum[7]};
-        for (size_t i = 0; i < sizeof all / sizeof *all; i++) GROW(tree->arena, *all[i], tree->target_capacity);
+        GROW(tree->arena, tree->x, tree->target_capacity);
+        GROW(tree->arena, tree->y, tree->target_capacity);
+        GROW(tree->arena, tree->h, tree->target_capacity);
+        for (int i = 0; i < KERNEL_SUMS; i++) GROW(tree->arena, tree->sum[i], tree->target_capacity);
     }
     lengths(pair->factor, at->n, at->half, at->leg, tree->h);
     tree_boxes_fill(&tree->to.boxes, at->n, at->x, at->y, tree->h, at->u_x ? LEAF_GRADIENT : LEAF, threads);
@@ -698,7 +700,7 @@ void tree_induce(struct tree *tree, const struct kernel_pair *pair, const struct
     }
 
     double *const to[] = {at->u, at->v, at->div, at->u_x, at->u_y, at->v_x, at->div_x, at->div_y};
-    for (int k = 0; k < (with_gradient ? KERNEL_SUMS : 3); k++) {
+    for (int k = 0; k < (with_gradient ? KERNEL_SUMS : KERNEL_SUMS_WITHOUT_GRADIENT); k++) {
         for (int i = 0; i < at->n && to[k]; i++) to[k][tree->to.boxes.index[i]] += tree->sum[k][i];
     }
 }
