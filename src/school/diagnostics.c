@@ -2,7 +2,6 @@
 #include "school/diagnostics.h"
 
 #include <math.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -156,16 +155,20 @@ static double peak_to_peak(const struct history *history, const double way[2], d
     return most - least;
 }
 
-// the mean of a force of the samples against the direction of the path, by trapezoids; which: its offset in struct
-// sample
-static double mean_against(const struct history *history, size_t which, const double way[2], double distance) {
-    double sum = 0;
+// the forces against the direction of the path, as means over the samples by trapezoids
+struct mean_resistance {
+    double fluid, friction; /* of all forces of the fluid, and of the friction alone, N */
+};
+
+static struct mean_resistance mean_resistance(const struct history *history, const double way[2], double distance) {
+    struct mean_resistance sum = {0};
     for (int age = 0; age < history->n; age++) {
-        const double *const force = (const double *)state_recall(history, age) + which / sizeof(double);
+        const struct sample *const sample = state_recall(history, age);
         const double weight = age == 0 || age == history->n - 1 ? 0.5 : 1;
-        sum -= weight * (force[0] * way[0] + force[1] * way[1]) / distance;
+        sum.fluid -= weight * (sample->force[0] * way[0] + sample->force[1] * way[1]) / distance;
+        sum.friction -= weight * (sample->friction[0] * way[0] + sample->friction[1] * way[1]) / distance;
     }
-    return sum / (history->n - 1);
+    return (struct mean_resistance){sum.fluid / (history->n - 1), sum.friction / (history->n - 1)};
 }
 
 /* How often the steering bias has reversed over the last period. Only moves of at least a share of the limit count, so
@@ -230,8 +233,7 @@ void diagnostics_period(const struct fish *fish, const struct history *history, 
     const bool is_held = fish->motion.is_held, has_travelled = distance > 1e-9 * fish->length;
     if (is_held) {
         const double ahead[2] = {cos(fish->start_heading), sin(fish->start_heading)};
-        to->mean_thrust = -mean_against(history, offsetof(struct sample, force), has_travelled ? way : ahead,
-                                        has_travelled ? distance : 1);
+        to->mean_thrust = -mean_resistance(history, has_travelled ? way : ahead, has_travelled ? distance : 1).fluid;
         to->mean_power += to->mean_thrust * to->speed;
         to->efficiency = to->mean_thrust * to->speed / to->mean_power;
     }
@@ -246,8 +248,9 @@ void diagnostics_period(const struct fish *fish, const struct history *history, 
     to->cost_of_transport_body = (earliest->work[WORK_DAMPING] - latest->work[WORK_DAMPING]) / duration / momentum;
     to->strouhal = fish->frequency * peak_to_peak(history, way, distance) / to->speed;
     if (is_held) return;
-    to->mean_thrust = -mean_against(history, offsetof(struct sample, force), way, distance);
-    to->efficiency = mean_against(history, offsetof(struct sample, friction), way, distance) * distance / into_water;
+    const struct mean_resistance resistance = mean_resistance(history, way, distance);
+    to->mean_thrust = -resistance.fluid;
+    to->efficiency = resistance.friction * distance / into_water;
     to->towed_efficiency = drag_towed(fish, to->speed) * distance / into_water;
 }
 
