@@ -148,7 +148,7 @@ void school_stir(struct setup *setup) {
         state->control[f].phi0_rate = school_random(setup);
         state->control[f].moment = 0.1 + 0.05 * f;
         state->control[f].moment_rate = -0.7;
-        if (fish->control.leader >= 0) {
+        if (fish->control.law == CONTROL_PLACE) {
             state->control[f].drive = 0.3;
             state->control[f].drive_rate = 0.8;
         }

@@ -73,7 +73,7 @@ static void progress_print(struct progress *progress, int n, char part[][PART_BY
 }
 
 /* True if a line is due. */
-static int progress_is_due(struct progress *progress, double part, double wall_time) {
+static bool progress_is_due(struct progress *progress, double part, double wall_time) {
     if (progress->terminal) {
         if (wall_time - progress->drawn_at < 0.2) return 0;
         progress->drawn_at = wall_time;

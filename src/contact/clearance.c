@@ -250,8 +250,9 @@ bool self_crossing(const struct fish *fish, const double *y, double *scratch) {
 }
 
 void self_crossing_remember(const struct school *school, struct state *state, double *scratch) {
-    for (int f = 0; f < school->n_fish && state->crossed < 0; f++) {
+    for (int f = 0; f < school->n_fish && !state->has_crossed; f++) {
         if (!self_crossing(&school->fish[f], state->y, scratch)) continue;
+        state->has_crossed = true;
         state->crossed = f;
         state->crossed_t = state->t;
     }

@@ -77,7 +77,7 @@ void clearance_step(const struct school *school, struct state *state, double t, 
  * half a turn. scratch: (4 n_nodes). */
 bool self_crossing(const struct fish *fish, const double *y, double *scratch);
 
-/* Record the first crossing of any body in state->crossed and state->crossed_t. scratch: (n_unknowns). */
+/* Record the first crossing of any body in the state: has_crossed, crossed and crossed_t. scratch: (n_unknowns). */
 void self_crossing_remember(const struct school *school, struct state *state, double *scratch);
 
 #endif

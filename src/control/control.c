@@ -465,12 +465,12 @@ void control_set(const struct fish *fish, struct control_memory *memory, enum co
     double rate;
     const double now = table_heading(&fish->control, t, &rate);
     lead_begin(&memory->heading, t, ramp, (const double[]){now, rate * ramp, 0, 0}, now + angle_wrap(value - now));
-    memory->has_heading = 1;
+    memory->has_heading = true;
 }
 
 void control_set_waypoints(const struct fish *fish, struct control_memory *memory, int n, const double *waypoints,
                            const double *y) {
-    memory->has_waypoints = 1;
+    memory->has_waypoints = true;
     memory->n_waypoints = n;
     memory->waypoint = 0;
     for (int i = 0; i < 2 * n; i++) memory->waypoints[i] = waypoints[i];

@@ -42,9 +42,10 @@ enum { CONTROL_MAX_WAYPOINTS = 32 };
 
 /* State of the control of one fish between events. */
 struct control_memory {
-    int waypoint; /* the next waypoint; the number of waypoints after the last waypoint */
-    int has_heading, has_waypoints, n_waypoints; /* values set from outside, below */
-    double held_heading;                         /* desired heading after the last waypoint, or of law place, rad */
+    int waypoint;                    /* the next waypoint; the number of waypoints after the last waypoint */
+    bool has_heading, has_waypoints; /* whether these are set from outside, below */
+    int n_waypoints;
+    double held_heading;        /* desired heading after the last waypoint, or of law place, rad */
     double phi0, phi0_rate;     /* event-based laws: value at the last event and rate until the next event, s-1 */
     double course_rate;         /* e of law course, rad s-1 */
     double moment, moment_rate; /* tau_f and rate, dimensionless and s-1 */
@@ -65,7 +66,7 @@ struct control_view {
     double t, interval;         /* time of the event, and from this event to the next, s */
     double moment;              /* tau, moment of the flow */
     double mean_heading;        /* over the last period, rad */
-    int has_course;             /* whether a full period has passed */
+    bool has_course;            /* whether a full period has passed */
     double course, course_rate; /* direction of motion over this period, rad, and rate, rad s-1 */
     double speed;               /* mean over this period, m s-1; 0: course and course_rate are 0 */
 

@@ -74,7 +74,7 @@ struct control_law_data {
     double course_share;             /* weight of the newest rate in the filtered rate: 1 - exp(-Dt/T_c) */
 
     /* law place */
-    int leader;             /* index of the fish whose place counts; -1 for the other laws */
+    int leader;             /* index of the fish whose place counts */
     double nose_offset[2];  /* of the nose from that of the leader, at the leader's first heading, m */
     double offset[2];       /* the same of the centres of mass of straight bodies, m */
     double frame;           /* the leader's heading at the start */

@@ -147,7 +147,7 @@ static void control_set(struct arena *arena, struct fish *fish, const struct fis
     }
 
     // law place; the centre of mass of a straight body lies behind the nose
-    to->leader = control->law == CONTROL_PLACE ? school_find_fish(parameters, control->of, strlen(control->of)) : -1;
+    if (control->law == CONTROL_PLACE) to->leader = school_find_fish(parameters, control->of, strlen(control->of));
     to->gains[0] = control->amplitude_gain;
     to->gains[1] = control->amplitude_damping;
     to->amplitude_limit = control->amplitude_limit;
@@ -227,7 +227,7 @@ static void places_set(struct school *school) {
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         struct control_law_data *const control = &school->fish[f].control;
-        if (control->leader < 0) continue;
+        if (control->law != CONTROL_PLACE) continue;
         const struct fish *const leader = &school->fish[control->leader];
         const double behind = fish_mass_mean(fish, fish->arc) - fish_mass_mean(leader, leader->arc);
         control->frame = leader->start_heading;
@@ -315,7 +315,7 @@ static enum status refuse_overlap(const struct school *school, struct arena *scr
 enum status fish_school_places(const struct school *school, const double *offset) {
     const int n = school->n_fish;
     bool has_places = false;
-    for (int f = 0; f < n; f++) has_places |= school->fish[f].control.leader >= 0;
+    for (int f = 0; f < n; f++) has_places |= school->fish[f].control.law == CONTROL_PLACE;
     if (!has_places) return STATUS_OK;
 
     // straight bodies at their places, as seen from the fish that leads each group
@@ -328,7 +328,7 @@ enum status fish_school_places(const struct school *school, const double *offset
         struct fish fish = school->fish[f];
         int last = f;
         double way[2] = {0, 0};
-        while (school->fish[last].control.leader >= 0) {
+        while (school->fish[last].control.law == CONTROL_PLACE) {
             const struct control_law_data *const control = &school->fish[last].control;
             for (int d = 0; d < 2; d++) way[d] += offset ? offset[2 * last + d] : control->nose_offset[d];
             last = control->leader;
@@ -342,7 +342,7 @@ enum status fish_school_places(const struct school *school, const double *offset
     int f, g;
     find_overlap(school, scratch, y, group, &f, &g);
     if (f == n) return STATUS_OK;
-    if (school->fish[f].control.leader < 0) {
+    if (school->fish[f].control.law != CONTROL_PLACE) {
         const int swap = f;
         f = g;
         g = swap;

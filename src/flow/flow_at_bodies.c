@@ -39,7 +39,8 @@ void flow_slip(const struct flow *flow, int f, const double *y, double slip[2]) 
 // ---- other fish and images
 
 static int *by_tree(const struct flow *flow, const struct flow_sum *sum, int targets, int sources) {
-    const int n = flow->n_classes, is_wake = sum->pair == WAKE_AT_BODY || sum->pair == WAKE_AT_WAKE;
+    const int n = flow->n_classes;
+    const bool is_wake = sum->pair == WAKE_AT_BODY || sum->pair == WAKE_AT_WAKE;
     return &flow->by_tree[((2 * is_wake + sum->of_images) * n + targets) * n + sources];
 }
 
@@ -138,7 +139,8 @@ static void induce_own(const struct flow *flow, const struct chunk *chunk, const
     const struct fish *const fish = &flow->school->fish[chunk->fish];
     const struct flow_fish *const of = &flow->fish[chunk->fish];
     const struct flow_class *const kind = &flow->classes[flow->class_of[chunk->fish]];
-    const int first = flow->points[chunk->fish].first, is_sheet = flow_has_free_sheets(flow);
+    const int first = flow->points[chunk->fish].first;
+    const bool is_sheet = flow_has_free_sheets(flow);
     const struct range control = range_overlap(chunk->at, (struct range){first, fish->n_control});
     const struct range tail = range_overlap(chunk->at, (struct range){first + flow_tail(fish), 1});
     const double wake_square = flow_square(flow, WAKE_AT_BODY, kind, kind);
@@ -429,11 +431,11 @@ void flow_find_decayed(struct flow *flow, const struct state *state, double *par
             const struct box body = box_around(points.n, points.x, points.y);
             if (f == g || points.n == 0 || box_gap(&body, &around) > far * school->fish[f].length) continue;
             const struct kernel_pair pair = flow_pair_of(flow, f, g, &(struct flow_sum){WAKE_AT_BODY, false});
-            for (int is_lost = 0; is_lost < (n_decaying[g] > 0 ? 2 : 1); is_lost++) {
-                const struct sources *const of = is_lost ? &sheet.middles.sources : &flow->fish[g].wake.middles.sources;
-                points.u = values[2 * is_lost] + flow->points[f].first;
-                points.v = values[2 * is_lost + 1] + flow->points[f].first;
-                kernel_induce(&pair, of, (struct range){0, of->n}, &points);
+            const struct sources *const of[] = {&flow->fish[g].wake.middles.sources, &sheet.middles.sources};
+            for (int i = 0; i < (n_decaying[g] > 0 ? 2 : 1); i++) {
+                points.u = values[2 * i] + flow->points[f].first;
+                points.v = values[2 * i + 1] + flow->points[f].first;
+                kernel_induce(&pair, of[i], (struct range){0, of[i]->n}, &points);
             }
         }
     }

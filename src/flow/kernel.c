@@ -358,7 +358,7 @@ const struct kernel kernel_infinite = {.cost = 1,
                                        .loops = loops_infinite,
                                        .unit = unit_infinite};
 
-const struct kernel kernel_finite = {.has_legs = 1,
+const struct kernel kernel_finite = {.has_legs = true,
                                      .cost = 4,
                                      .tree_sources = 1000,
                                      .tree_interactions = 1e6,

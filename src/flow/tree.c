@@ -94,7 +94,7 @@ double tree_interactions(const struct tree *tree) {
     return tree->interactions;
 }
 
-int tree_is_faster(const struct kernel *kernel, int n_rings, double n_interactions, double tolerance) {
+bool tree_is_faster(const struct kernel *kernel, int n_rings, double n_interactions, double tolerance) {
     return tolerance > 0 && n_rings >= kernel->tree_sources && n_interactions >= kernel->tree_interactions;
 }
 
@@ -363,8 +363,8 @@ static void pair_add(struct tree *tree, const struct node_pair *pair) {
 static void boxes_pair_up(const struct search *search, int target, int source) {
     struct tree *const tree = search->tree;
     const struct node_tree *const to = &tree->to, *const from = &tree->from;
-    const int target_is_leaf = target >= tree_boxes_level(to->boxes.depth);
-    const int source_is_leaf = source >= tree_boxes_level(from->boxes.depth);
+    const bool target_is_leaf = target >= tree_boxes_level(to->boxes.depth);
+    const bool source_is_leaf = source >= tree_boxes_level(from->boxes.depth);
     const double n_targets = to->boxes.box[target].n, n_sources = from->boxes.box[source].n;
     struct node_pair pair = {.target = target, .source = source};
 

@@ -14,6 +14,8 @@
 #ifndef TREE_H
 #define TREE_H
 
+#include <stdbool.h>
+
 #include "flow/kernel.h"
 
 struct tree;
@@ -22,7 +24,7 @@ struct tree;
 struct tree *tree_create(struct arena *arena);
 
 /* Whether the tree is faster than this number of direct interactions. With the tolerance 0 it never is. */
-int tree_is_faster(const struct kernel *kernel, int n_rings, double n_interactions, double tolerance);
+bool tree_is_faster(const struct kernel *kernel, int n_rings, double n_interactions, double tolerance);
 
 /* Like kernel_induce for all rings, except that neither rings nor targets have a `square`, and `edge` and `leg_u` of
  * the targets are not used. The errors of the velocity and of length div u are below tolerance, m s-1. For rings of one

@@ -50,7 +50,7 @@ static void pressure_create(struct arena *arena, struct fluid_force *force) {
 // circulations are the same as before, R is kept, because the energy balance of a step needs it twice.
 static void pressure_find_matrix(struct pressure *p, const double *strength, struct pressure_matrix *to) {
     const struct fish *const fish = p->fish;
-    bool is_new = 0;
+    bool is_new = false;
     for (int j = 0; j < fish->n_sheet; j++) {
         const double circulation = fish->sheet_weight[j] * strength[fish->at.gamma + j];
         is_new |= !(fabs(circulation - to->circulation[j]) <= 0);

@@ -35,7 +35,7 @@ static void sensor_velocity(const struct sensor_targets *at, int c, double v[2])
 // add one source at all control points: K . (q (v - V) + dC/dt dx), and g (v - V) x d for its leg
 static void sensor_add(const struct sensor_targets *at, const struct kernel_pair *pair,
                        const struct sensor_source *source) {
-    const int has_legs = at->flow->kernel->has_legs;
+    const bool has_legs = at->flow->kernel->has_legs;
     for (int first = 0; first < at->fish->n_control; first += KERNEL_CHUNK) {
         const int n = at->fish->n_control - first < KERNEL_CHUNK ? at->fish->n_control - first : KERNEL_CHUNK;
         struct unit_values unit;

@@ -25,7 +25,7 @@ char *checkpoints_path(struct arena *arena, const char *result) {
 
 enum status checkpoints_create(struct arena *arena, struct checkpoints *checkpoints, const struct case_values *values,
                                const char *result, const char *at) {
-    *checkpoints = (struct checkpoints){.arena = arena, .places = "", .last = -1, .last_place = -1};
+    *checkpoints = (struct checkpoints){.arena = arena, .places = ""};
     checkpoints->interval = lround(values->time.checkpoint_interval / values->school.shedding_interval);
     checkpoints->wall = values->time.checkpoint_wall;
     checkpoints->written = clock_seconds(CLOCK_MONOTONIC);
@@ -67,9 +67,11 @@ enum status checkpoints_create(struct arena *arena, struct checkpoints *checkpoi
 
 void checkpoints_resume(struct checkpoints *checkpoints, const struct checkpoint *from, long event,
                         bool with_other_end) {
+    checkpoints->has_place = true;
     checkpoints->last_place = event;
     checkpoints->places = arena_text(checkpoints->arena, "%s", from->places);
     if (with_other_end) return;
+    checkpoints->has_last = true;
     checkpoints->last = event;
     checkpoints->effective = arena_text(checkpoints->arena, "%s", from->effective);
 }
@@ -102,7 +104,8 @@ void checkpoints_end(const struct checkpoints *checkpoints) {
 
 // the places of further checkpoints, including the present one
 static const char *checkpoint_places(const struct checkpoints *checkpoints, const struct state *state) {
-    if (checkpoint_is_regular(checkpoints, state->event) || state->event == checkpoints->last_place) {
+    const bool has_place = checkpoints->has_place && state->event == checkpoints->last_place;
+    if (has_place || checkpoint_is_regular(checkpoints, state->event)) {
         return checkpoints->places;
     }
     return arena_text(checkpoints->arena, "%s%s%.10g", checkpoints->places, *checkpoints->places ? "," : "", state->t);
@@ -118,6 +121,7 @@ static enum status checkpoint_put(struct checkpoints *checkpoints, const struct 
     TRY(result_file_mark(record->file, &marked.rows));
     TRY(checkpoint_write(checkpoints->arena, checkpoints->path, checkpoints->previous, &marked, simulation->state,
                          simulation->school));
+    checkpoints->has_last = true;
     checkpoints->last = simulation->state->event;
     checkpoints->written = clock_seconds(CLOCK_MONOTONIC);
     return STATUS_OK;
@@ -131,10 +135,12 @@ enum status checkpoints_write(struct checkpoints *checkpoints, const struct simu
     const char *const places = checkpoint_places(checkpoints, state);
     if (places != checkpoints->places) {
         checkpoints->places = places;
+        checkpoints->has_place = true;
         checkpoints->last_place = state->event;
         result_file_note(record->file, RESULT_CHECKPOINT_AT, checkpoints->places);
     }
-    if (state->event == checkpoints->last && !checkpoints->is_by_wall) return STATUS_OK;
+    const bool is_written = checkpoints->has_last && state->event == checkpoints->last;
+    if (is_written && !checkpoints->is_by_wall) return STATUS_OK;
     checkpoints->is_by_wall = false;
     return checkpoint_put(checkpoints, simulation, record, checkpoints->places);
 }

@@ -29,11 +29,13 @@ struct checkpoints {
     int n_at;
     long *at;           /* further events with a checkpoint                                      (n_at) */
     const char *places; /* times of the further checkpoints so far, as in --checkpoint-at */
-    long last_place;    /* event of the last further checkpoint; -1: none yet */
-    long last;          /* event of the last checkpoint; -1: none yet */
-    double wall;        /* wall time between two checkpoints, s; 0: none */
-    double written;     /* clock (monotonic) at the last checkpoint, or at the start of the run, s */
-    bool is_by_wall;    /* the last checkpoint was written because time.checkpoint_wall had passed */
+    bool has_place;     /* whether there was a further checkpoint; its event */
+    long last_place;
+    bool has_last; /* whether there was a checkpoint; the event of the last one */
+    long last;
+    double wall;     /* wall time between two checkpoints, s; 0: none */
+    double written;  /* clock (monotonic) at the last checkpoint, or at the start of the run, s */
+    bool is_by_wall; /* the last checkpoint was written because time.checkpoint_wall had passed */
 };
 
 /* The ending of the previous checkpoint, and the path of the checkpoint of a result. */

@@ -44,7 +44,7 @@ static double bytes_so_far(void) {
 static enum status event_cost(struct simulation *simulation, double evaluations, double *seconds) {
     struct state *const state = simulation->state;
     struct residual *const residual = simulation->residual;
-    int jumped;
+    bool jumped;
 
     double start = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
     TRY(event_next(state, residual, simulation->consistent, &jumped));

@@ -168,7 +168,7 @@ static void event_observe_after(struct residual *residual, struct state *state) 
 // The rest of an event, after the velocities of the free vortices are known. jumps: the unknowns have jumped. *jumped:
 // they have, or a control law has made them jump.
 static enum status event_finish(struct state *state, struct residual *residual, struct initial_conditions *initial,
-                                int jumps, int *jumped) {
+                                bool jumps, bool *jumped) {
     // Evaluate the flow at the event if unknowns jump, or if shedding or control take values from it. The samples of
     // the history do not need it: the last evaluation of the step is exact to the tolerance of Newton's iteration.
     const struct school *const school = residual->school;
@@ -220,14 +220,14 @@ enum status event_start(struct state *state, struct residual *residual, struct i
         event_wake_velocities(state, residual, ALL);
     }
 
-    int jumped;
-    TRY(event_finish(state, residual, initial, 1, &jumped));
+    bool jumped;
+    TRY(event_finish(state, residual, initial, true, &jumped));
     diagnostics_start(residual, state);
     return STATUS_OK;
 }
 
 enum status event_next(struct state *state, struct residual *residual, struct initial_conditions *initial,
-                       int *jumped) {
+                       bool *jumped) {
     const struct school *school = residual->school;
     const int threads = fish_threads(school);
     event_observe_before(residual, state);
@@ -241,7 +241,7 @@ enum status event_next(struct state *state, struct residual *residual, struct in
     state->event++;
     state->t = fish_event_time(school, state->event);
 
-    const int jumps = school->shedding == SHEDDING_IMPULSIVE;
+    const bool jumps = school->shedding == SHEDDING_IMPULSIVE;
     if (jumps) diagnostics_before_jump(residual, state);
     if (jumps) {
         TRY(event_release_impulse(state, residual, initial));
@@ -260,7 +260,7 @@ enum status event_next(struct state *state, struct residual *residual, struct in
 }
 
 enum status event_change(struct state *state, struct residual *residual, struct initial_conditions *initial,
-                         int velocities_are_given) {
+                         bool velocities_are_given) {
     const struct residual_mode mode = {.velocities_are_given = velocities_are_given};
     TRY(initial_conditions_solve(initial, &mode, state->t, state->y, state->yp));
     event_wake_velocities(state, residual, ALL);

@@ -5,6 +5,8 @@
 #ifndef EVENT_H
 #define EVENT_H
 
+#include <stdbool.h>
+
 #include "base/status.h"
 #include "school/residual.h"
 #include "solver/initial_conditions.h"
@@ -15,13 +17,14 @@ enum status event_start(struct state *state, struct residual *residual, struct i
 
 /* Perform the next event; the unknowns must be those at its time. *jumped: the unknowns are discontinuous there, so the
  * integrator has to restart. Fails with STATUS_SOLVER. */
-enum status event_next(struct state *state, struct residual *residual, struct initial_conditions *initial, int *jumped);
+enum status event_next(struct state *state, struct residual *residual, struct initial_conditions *initial,
+                       bool *jumped);
 
 /* Account for bodies or wakes that a caller has changed at the event of the state: make the unknowns consistent, as at
  * an event with a jump, and evaluate the velocities of all vortices again. In the next interval the vortices move with
  * these velocities alone. velocities_are_given: the momenta follow from the velocities of the bodies, as at the start;
  * otherwise the velocities follow from the momenta. The integrator has to restart. Fails with STATUS_SOLVER. */
 enum status event_change(struct state *state, struct residual *residual, struct initial_conditions *initial,
-                         int velocities_are_given);
+                         bool velocities_are_given);
 
 #endif

@@ -197,7 +197,7 @@ enum status simulate_step(struct simulation *simulation) {
 
     // perform the event, and count before a restart, which discards the last step
     if (status == STATUS_OK) {
-        int jumped = 0;
+        bool jumped = false;
         status = event_next(state, simulation->residual, simulation->consistent, &jumped);
         if (status == STATUS_OK) simulate_count(simulation, &simulation->totals);
         if (status == STATUS_OK && jumped && integrator->restart) status = integrator->restart(simulation->solver);

@@ -52,7 +52,7 @@ void diagnostics_remember(struct residual *residual, struct state *state) {
         sample.leading_edge = forces.pressure.leading_edge_a0;
         sample.bias = y[fish->at.phi0];
         const struct fish *const leader =
-            fish->control.leader >= 0 ? &residual->school->fish[fish->control.leader] : NULL;
+            fish->control.law == CONTROL_PLACE ? &residual->school->fish[fish->control.leader] : NULL;
         if (leader) {
             sample.leader[0] = fish_mass_mean(leader, y + leader->at.x);
             sample.leader[1] = fish_mass_mean(leader, y + leader->at.y);

@@ -225,7 +225,7 @@ void diagnostics_restart(struct residual *residual, struct state *state) {
 
     diagnostics_momentum_start(residual, state);
     clearance_start(residual->school, state, residual->neighbours, residual->scratch);
-    state->crossed = -1;
+    state->has_crossed = false;
     memset(state->divergence, 0, sizeof state->divergence);
     self_crossing_remember(residual->school, state, residual->scratch);
 }

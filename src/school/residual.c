@@ -158,7 +158,8 @@ struct residual *residual_create(struct arena *arena, const struct school *schoo
     NEW(arena, created->force, school->n_fish);
     NEW(arena, created->scratch, school->n_unknowns);
 
-    int n_joints = 0, most_points = 0, most_columns = 0, most_rows = 0, has_edges = 0;
+    int n_joints = 0, most_points = 0, most_columns = 0, most_rows = 0;
+    bool has_edges = false;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         force_model_create(arena, fish, &created->force[f]);
@@ -214,7 +215,7 @@ enum bound_sheet_law residual_sheet_law(const struct residual *residual, const s
     return sheet_law(residual->school, mode);
 }
 
-int residual_shed_is_algebraic(const struct residual *residual) {
+bool residual_shed_is_algebraic(const struct residual *residual) {
     return residual_sheet_law(residual, &residual_run) == BOUND_SHEET_EDGE;
 }
 

@@ -156,6 +156,6 @@ void residual_kinds(const struct residual *residual, const struct residual_mode 
 
 /* Which equation determines the circulation shed, and whether it is algebraic in a run. */
 enum bound_sheet_law residual_sheet_law(const struct residual *residual, const struct residual_mode *mode);
-int residual_shed_is_algebraic(const struct residual *residual);
+bool residual_shed_is_algebraic(const struct residual *residual);
 
 #endif

@@ -112,7 +112,8 @@ void rigid_change(const struct school *school, struct state *state, int f, const
     }
     // and those of the fish that hold a place beside it
     for (int g = 0; g < school->n_fish; g++) {
-        if (school->fish[g].control.leader != f) continue;
+        const struct control_law_data *const control = &school->fish[g].control;
+        if (control->law != CONTROL_PLACE || control->leader != f) continue;
         for (int i = 0; i < state->history[g].n_slots; i++) {
             struct sample *const sample = &state->history[g].sample[i];
             rotate(before.place, change->heading, &sample->leader[0], &sample->leader[1]);

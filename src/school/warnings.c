@@ -368,7 +368,7 @@ static bool school_warning(enum warning warning, struct residual *residual, cons
             return true;
 
         case WARNING_CROSSING:
-            if (state->crossed < 0) return false;
+            if (!state->has_crossed) return false;
             snprintf(line, WARNING_BYTES,
                      "the body of %.40s crosses itself at t = %.4g s: later results are invalid; use a stiffer body or "
                      "a smaller wave.amplitude",

@@ -59,10 +59,9 @@ static void newton_record(struct ida_newton *newton, double all, double differen
                           const double *weight) {
     struct trace_attempt *const attempt = newton->attempt;
     const int n = (int)N_VGetLength(newton->correction), i = attempt->n_corrections++;
-    attempt->worst = -1;
     for (int k = 0; k < n; k++) {
         const double weighted = fabs(correction[k] * weight[k]);
-        if (attempt->worst >= 0 && !(weighted > attempt->worst_correction)) continue;
+        if (k > 0 && !(weighted > attempt->worst_correction)) continue;
         attempt->worst = k;
         attempt->worst_correction = weighted;
     }
@@ -210,7 +209,7 @@ static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector 
     struct ida_newton *const newton = solver->content;
     const struct ida_newton_rules *const rules = &newton->rules;
     newton->attempt = rules->attempt ? rules->attempt(rules->data) : NULL;
-    if (newton->attempt) *newton->attempt = (struct trace_attempt){.worst = -1, .age = newton->n_solutions};
+    if (newton->attempt) *newton->attempt = (struct trace_attempt){.age = newton->n_solutions};
     const int code = newton_solve_step(solver, predicted, total, weights, tolerance, evaluate, ida);
     if (newton->attempt) rules->attempted(rules->data, code);
     return code;

@@ -4,6 +4,8 @@
 #ifndef IDA_NEWTON_H
 #define IDA_NEWTON_H
 
+#include <stdbool.h>
+
 #include "solver/corotation.h"
 #include "solver/sundials.h"
 #include "solver/trace.h"
@@ -20,7 +22,7 @@ struct ida_newton_rules {
     N_Vector kinds;
     /* whether the total corrections recur with a period of a few steps, so that the start is extrapolated from one
      * period before; else the start is the last correction */
-    int is_periodic;
+    bool is_periodic;
     void *data; /* argument of the functions below */
     /* d(dy/dt)/dy in IDA's present step, s-1; while it is constant, corrections hardly change */
     double (*leading_coefficient)(void *data);

@@ -184,7 +184,7 @@ enum status initial_conditions_solve(struct initial_conditions *c, const struct 
     c->iterations += iterations;
     if (c->failure == STATUS_STOPPED) return STATUS_STOPPED;
     int worst;
-    const int is_rounded = code == KIN_MAXITER_REACHED && largest_residual(c, &worst) <= rounded;
+    const bool is_rounded = code == KIN_MAXITER_REACHED && largest_residual(c, &worst) <= rounded;
     if (code < 0 && !is_rounded) return initial_failed(c, code);
     // rates and diagnostics need the velocity of the fluid at the solution
     take_algebraic(c, c->start, c->y);

@@ -24,7 +24,7 @@ struct block {
     /* the effect of changing the column of the shed circulation since the last set-up: z = D^-1 change, divided by one
      * plus the element of z for that circulation                                                  (unknowns of the
      * fish) */
-    int is_updated;
+    bool is_updated;
     double *update;
 };
 
@@ -187,7 +187,7 @@ enum status linear_setup(struct linear *linear) {
     for (int f = 0; f < school->n_fish; f++) {
         // a new pattern needs memory, which must not be requested inside a parallel region
         fish_factors_prepare(linear->block[f].factors);
-        linear->block[f].is_updated = 0;
+        linear->block[f].is_updated = false;
     }
 
     if (threads == 1) {
@@ -257,11 +257,11 @@ static void update_shed(const struct operation *of, int f) {
     const int column = jacobian->school->fish[f].at.circulation - jacobian->school->fish[f].at.x;
     double *const change = block->update;
     find_change(jacobian, f, of->from, change);
-    block->is_updated = 0;
+    block->is_updated = false;
     solve_block(of->linear, f, change);
     const double divisor = 1 + change[column];
     for (int i = 0; i < own->n; i++) change[i] /= divisor;
-    block->is_updated = 1;
+    block->is_updated = true;
 }
 
 static void whole_update_shed(struct linear *linear, const double *value) {

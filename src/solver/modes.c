@@ -67,7 +67,7 @@ static int wake_length(const struct wake *wake, double interval) {
 
 /* Set the labels of a fish to those that a motion with exponent lambda has shed, tau after the event: their real or
  * imaginary part, times a factor. */
-static void put_labels(const struct modes *modes, int f, double complex lambda, double tau, int is_imaginary,
+static void put_labels(const struct modes *modes, int f, double complex lambda, double tau, bool is_imaginary,
                        double factor) {
     struct wake *const wake = &modes->state->wake[f];
     const struct school *const school = modes->residual->school;
@@ -334,7 +334,7 @@ static enum status find_still(const struct modes *modes, const double complex *s
 }
 
 /* Whether the events resolve a mode and the mode lasts as long as the wake. loosely: a factor on both limits. */
-static int is_resolved(const struct modes *modes, double complex lambda, double loosely) {
+static bool is_resolved(const struct modes *modes, double complex lambda, double loosely) {
     const double interval = modes->residual->school->interval;
     double life = interval;
     for (int f = 0; f < modes->n_shed; f++) life = fmax(life, wake_length(&modes->state->wake[f], interval) * interval);

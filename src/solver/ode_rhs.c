@@ -284,7 +284,7 @@ enum status ode_rhs_rates(struct ode_rhs *d, double t, double *y, double *yp) {
     TRY(solve_sheets(d, t, y));
 
     // the velocity of rings has a divergence, which the influence leaves out
-    const int has_legs = d->residual->flow->kernel->has_legs;
+    const bool has_legs = d->residual->flow->kernel->has_legs;
     if (has_legs) flow_velocity(d->residual->flow, state, t, y, false);
     if (!has_legs) add_sheets(d, y);
 

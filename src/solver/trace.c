@@ -65,7 +65,7 @@ void trace_write(struct trace *trace, const struct school *school, const struct 
     trace_list(file, attempt, offsetof(struct trace_correction, norm));
     trace_list(file, attempt, offsetof(struct trace_correction, differential));
     trace_list(file, attempt, offsetof(struct trace_correction, rate));
-    if (attempt->worst < 0) {
+    if (attempt->n_corrections == 0) {
         fputs(",,\n", file);
         if (ferror(file) && trace->error == 0) trace->error = errno;
         return;

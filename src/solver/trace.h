@@ -34,7 +34,7 @@ struct trace_attempt {
     long gmres;        /* iterations of GMRES */
     int n_corrections; /* the first TRACE_MOST_CORRECTIONS are kept */
     struct trace_correction correction[TRACE_MOST_CORRECTIONS];
-    int worst;               /* the unknown with the largest last correction; -1: no correction */
+    int worst;               /* the unknown with the largest last correction, if there was a correction */
     double worst_correction; /* in tolerances */
 };
 

@@ -27,7 +27,6 @@ struct state *state_create(struct arena *parent, const struct school *school) {
 
     // set values that do not start at zero
     state->closest->distance = INFINITY;
-    state->crossed = -1;
     for (int f = 0; f < n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         wake_create(arena, &state->wake[f], 16);
@@ -59,7 +58,7 @@ void state_begin_rates(struct state *state, const struct school *school) {
     state->n_past = 1;
 }
 
-void state_find_rates(struct state *state, const struct school *school, int shed_is_algebraic) {
+void state_find_rates(struct state *state, const struct school *school, bool shed_is_algebraic) {
     // slopes at the newest of up to 5 values at equal distances of 1, newest first
     static const double slope[STATE_PAST + 1][STATE_PAST + 1] = {
         {0}, {1, -1}, {3. / 2, -2, 1. / 2}, {11. / 6, -3, 3. / 2, -1. / 3}, {25. / 12, -4, 3, -4. / 3, 1. / 4}};
@@ -115,7 +114,7 @@ void state_reserve(struct state *state, const struct school *school) {
 }
 
 void state_forget_newest(struct history *history) {
-    const int has_wrapped = history->last == 0 && history->n > 1;
+    const bool has_wrapped = history->last == 0 && history->n > 1;
     history->last = has_wrapped ? history->capacity : history->last - 1;
     if (history->n > 0) history->n--;
 }
@@ -165,7 +164,7 @@ const struct state_row state_table[] = {
     {"wake.rate", OF_WAKE(STATE_REAL, rate), STATE_VORTICES},
     {"wake.rate_before", OF_WAKE(STATE_REAL, rate_before), STATE_VORTICES},
     {"wake.birth", OF_WAKE(STATE_REAL, birth), STATE_VORTICES},
-    {"wake.has_markers", OF_WAKE(STATE_INTEGER, has_markers), STATE_NO_ARRAY},
+    {"wake.has_markers", OF_WAKE(STATE_FLAG, has_markers), STATE_NO_ARRAY},
     {"wake.tail_velocity", OF_WAKE(STATE_REAL, tail_velocity), STATE_NO_ARRAY},
     {"wake.tail_tangent", OF_WAKE(STATE_REAL, tail_tangent), STATE_NO_ARRAY},
     {"wake.n_old", OF_WAKE(STATE_INTEGER, n_old), STATE_NO_ARRAY},
@@ -185,9 +184,9 @@ const struct state_row state_table[] = {
     {"control.frequency", OF_CONTROL(STATE_REAL, frequency), STATE_NO_ARRAY},
     {"control.bias", OF_CONTROL(STATE_REAL, bias), STATE_NO_ARRAY},
     {"control.heave", OF_CONTROL(STATE_REAL, heave), STATE_NO_ARRAY},
-    {"control.has_heading", OF_CONTROL(STATE_INTEGER, has_heading), STATE_NO_ARRAY},
+    {"control.has_heading", OF_CONTROL(STATE_FLAG, has_heading), STATE_NO_ARRAY},
     {"control.heading", OF_CONTROL(STATE_REAL, heading), STATE_NO_ARRAY},
-    {"control.has_waypoints", OF_CONTROL(STATE_INTEGER, has_waypoints), STATE_NO_ARRAY},
+    {"control.has_waypoints", OF_CONTROL(STATE_FLAG, has_waypoints), STATE_NO_ARRAY},
     {"control.n_waypoints", OF_CONTROL(STATE_INTEGER, n_waypoints), STATE_NO_ARRAY},
     {"control.waypoints", OF_CONTROL(STATE_REAL, waypoints), STATE_NO_ARRAY},
     {"control.set_out", OF_CONTROL(STATE_REAL, set_out), STATE_NO_ARRAY},
@@ -227,6 +226,7 @@ const struct state_row state_table[] = {
     {"closest.before_t", OF_CLOSEST(STATE_REAL, before_t), STATE_NO_ARRAY},
     {"closest.before", OF_CLOSEST(STATE_REAL, before), STATE_UNKNOWNS},
 
+    {"has_crossed", OF_STATE(STATE_FLAG, has_crossed), STATE_NO_ARRAY},
     {"crossed", OF_STATE(STATE_COUNT, crossed), STATE_NO_ARRAY},
     {"crossed_t", OF_STATE(STATE_REAL, crossed_t), STATE_NO_ARRAY},
     {"diverged", OF_STATE(STATE_COUNT, diverged), STATE_NO_ARRAY},
@@ -245,6 +245,7 @@ size_t state_table_size(const struct state_row *row) {
         case STATE_REAL: return sizeof(double);
         case STATE_INTEGER: return sizeof(int);
         case STATE_COUNT: return sizeof(long);
+        case STATE_FLAG: return sizeof(bool);
         case STATE_UNKEPT: break;
     }
     return 1;
@@ -349,10 +350,20 @@ enum status state_table_check(const struct state *state, const struct school *sc
         }
     }
 
+    // a byte that is no truth value is examined as a byte
+    for (int i = 0; i < state_table_n; i++) {
+        const struct state_row *const row = &state_table[i];
+        if (row->type != STATE_FLAG) continue;
+        for (int f = 0; f < state_table_n_owners(row, school); f++) {
+            const unsigned char flag = *(const unsigned char *)state_table_values(row, state, f);
+            if (flag > 1) return status_fail(STATUS_FILE, "'%s' is %d, neither 0 nor 1", row->name, flag);
+        }
+    }
+
     // indices are within range
     bool is_good = state->event >= 0 &&
                    fabs(state->t - (double)state->event * school->interval) <= school->interval / 2 &&
-                   state->crossed >= -1 && state->crossed < school->n_fish && state->diverged >= 0 &&
+                   state->crossed >= 0 && state->crossed < school->n_fish && state->diverged >= 0 &&
                    state->diverged < school->n_fish;
     is_good = is_good && state->n_past >= 0 && state->n_past <= STATE_PAST;
     for (int i = 0; i < 2; i++) {

@@ -3,6 +3,7 @@
 #ifndef STATE_H
 #define STATE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "base/arena.h"
@@ -90,7 +91,8 @@ struct state {
     struct energy_balance *balance;    /* (n_fish) */
     struct momentum_balance *momentum; /* (n_fish) */
     struct closest *closest;           /* (1) */
-    long crossed;                      /* the first fish with a self-crossing at an event, or -1 */
+    bool has_crossed;                  /* whether a body has crossed itself at an event */
+    long crossed;                      /* the first fish with such a self-crossing */
     double crossed_t;                  /* time of this event, s */
     long diverged;                     /* the fish with the worst divergence at an event so far */
     double divergence[N_DIVERGENCE];
@@ -105,7 +107,7 @@ void state_free(struct state *state);
  * unknowns at this event and the last STATE_PAST events, of fewer after state_begin_rates. Sets yp of velocities and
  * bound strengths of fish with force: pressure, and of the shed circulation of all fish unless differential. Within an
  * interval the rates grow from event to event with the nascent stretch, and jump back: doc/numerics.md, section 3. */
-void state_find_rates(struct state *state, const struct school *school, int shed_is_algebraic);
+void state_find_rates(struct state *state, const struct school *school, bool shed_is_algebraic);
 
 /* Discard the events before a jump; the next rates begin with the present unknowns. */
 void state_begin_rates(struct state *state, const struct school *school);
@@ -144,6 +146,7 @@ enum state_type {
     STATE_REAL,    /* double */
     STATE_INTEGER, /* int */
     STATE_COUNT,   /* long */
+    STATE_FLAG,    /* bool */
     STATE_UNKEPT   /* property of the memory, not of the state: neither copied nor written */
 };
 

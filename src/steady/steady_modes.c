@@ -62,7 +62,8 @@ enum status steady_modes_find(struct simulation *simulation, struct steady_value
     // the held bodies grow a wake
     struct arena *const arena = arena_create(simulation->arena, "the modes of the bodies");
     struct state *kept = NULL;
-    int jumped, n_most = STEADY_QUANTITIES * school->n_fish;
+    bool jumped;
+    int n_most = STEADY_QUANTITIES * school->n_fish;
     steady_map_save(arena, simulation, &kept);
     TRY(event_start(state, simulation->residual, simulation->consistent));
     hold_bodies(simulation, kept, state->t);

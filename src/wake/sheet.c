@@ -364,7 +364,7 @@ double sheet_place_nascent(struct sheet_points *points, const struct school *sch
 
     const double older = newest >= 0 ? wake_strength_of(wake, school, t, tau, newest) : wake->shed_before;
     struct nascent_end *const end = &points->end;
-    *end = (struct nascent_end){.is_overtaken = 0};
+    *end = (struct nascent_end){.is_overtaken = false};
     sheet_newest(wake, school->interval, tau, tail, end->x);
 
     // beside the tail is x - s t with s = (x - x_tail) . t < 0; this point moves with the tail along t and, as the
@@ -408,7 +408,8 @@ void sheet_place_steady(struct sheet *sheet, struct sheet_points *points, const 
 
     // behind the last end, where the legs act like 1/d^3, quadrature in 1/d
     for (int i = 0; i < n; i++) {
-        const int panel = i / NODES, is_last = panel == n_panels;
+        const int panel = i / NODES;
+        const bool is_last = panel == n_panels;
         const double q = node[i % NODES], part = weight[i % NODES], first = depth * steady_end(panel);
         const double length = is_last ? first : depth * steady_end(panel + 1) - first;
         const double distance = is_last ? first / q : first + q * length;

@@ -18,6 +18,8 @@
 #ifndef SHEET_H
 #define SHEET_H
 
+#include <stdbool.h>
+
 #include "base/status.h"
 #include "fish/fish.h"
 #include "wake/sources.h"
@@ -37,7 +39,7 @@ enum { SHEET_GRADED = 1, SHEET_PAIRED = 4 };
  * overtaken the marker, a point beside the tail. This point moves with the tail along the tangent, and by by_turn per
  * displacement X'.n of the tangent vector along the normal. */
 struct nascent_end {
-    int is_overtaken;
+    bool is_overtaken;
     double x[2]; /* m */
     double tangent[2], normal[2], by_turn[2];
 };

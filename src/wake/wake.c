@@ -288,8 +288,8 @@ void wake_set_velocity(struct wake *wake, const double *u, const double *v, cons
 
     // both markers of a vortex from outside move together: rounding would let them rotate about each other
     for (int i = 0; i + 2 < wake->n_vortex && wake->has_markers; i++) {
-        const int is_vortex = !(fabs(wake->x[i + 1] - wake->x[i]) > 0) && !(fabs(wake->y[i + 1] - wake->y[i]) > 0) &&
-                              fabs(wake->circulation[i + 1] - wake->circulation[i]) > 0;
+        const bool is_vortex = !(fabs(wake->x[i + 1] - wake->x[i]) > 0) && !(fabs(wake->y[i + 1] - wake->y[i]) > 0) &&
+                               fabs(wake->circulation[i + 1] - wake->circulation[i]) > 0;
         if (!is_vortex) continue;
         for (int k = 0; k < 2; k++) {
             now[k][i + 1] = now[k][i];

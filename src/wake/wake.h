@@ -27,7 +27,7 @@ struct wake {
     double *circulation;         /* m2 s-1, constant after release; for a marker: the label (n_vortex) */
     double *rate, *rate_before;  /* rate of labels at the same events, m2 s-2; 0 without rings (n_vortex) */
     double *birth;               /* time of release, s                                (n_vortex) */
-    int has_markers;             /* the queue holds markers of a sheet: sheet.h */
+    bool has_markers;            /* the queue holds markers of a sheet: sheet.h */
     int n_old;                   /* number of old stretches, the oldest ones: stretch.h */
     int n_added;                 /* number of vortices added from outside so far: at most wake_spare */
     double tail_velocity[2], tail_tangent[2]; /* at the last event, m s-1 and 1; only with markers */

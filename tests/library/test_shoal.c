@@ -1053,13 +1053,14 @@ TEST(a_body_that_is_put_across_itself_is_remembered) {
     struct shoal *const run = opened_to_change(state, 0.1);
     double x[18];
     assert_int_equal(shoal_state(run, 0, x, NULL), SHOAL_OK);
-    assert_int_equal(run->simulation->state->crossed, -1);
+    assert_false(run->simulation->state->has_crossed);
     // eight edges that turn by 1.1 rad each: more than a circle
     for (int k = 0; k < 8; k++) {
         x[2 * k + 2] = x[2 * k] + cos(1.1 * k) / 8;
         x[2 * k + 3] = x[2 * k + 1] + sin(1.1 * k) / 8;
     }
     assert_int_equal(shoal_set_state(run, 0, x, NULL), SHOAL_OK);
+    assert_true(run->simulation->state->has_crossed);
     assert_int_equal(run->simulation->state->crossed, 0);
     NEAR(run->simulation->state->crossed_t, 0.1, 0, 1e-15);
 }

@@ -71,8 +71,10 @@ TEST(a_run_that_is_resumed_keeps_its_places_and_writes_none_twice) {
         school_ok(create(&checkpoints, &values, NULL));
         checkpoints_resume(&checkpoints, &from, 5, with_other_end);
         assert_string_equal(checkpoints.places, "0.06,0.1");
+        assert_true(checkpoints.has_place);
         assert_int_equal(checkpoints.last_place, 5);
-        assert_int_equal(checkpoints.last, with_other_end ? -1 : 5);
+        assert_int_equal(checkpoints.has_last, !with_other_end);
+        if (!with_other_end) assert_int_equal(checkpoints.last, 5);
         assert_int_equal(strcmp(checkpoints.effective, "the case") == 0, !with_other_end);
     }
 }

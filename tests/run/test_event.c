@@ -61,7 +61,7 @@ TEST(an_event_without_finite_velocities_is_final) {
         // continuous shedding releases at the nascent vortex, impulsive shedding at the tail
         s->wake[0].slip[0] = NAN;
         if (i == 1) s->y[simulation->school->fish[0].at.x + 6] = NAN;
-        int jumped;
+        bool jumped;
         assert_int_equal(event_next(s, simulation->residual, simulation->consistent, &jumped), STATUS_SOLVER);
         assert_non_null(strstr(status_message(), "has no finite value at t = 0.12"));
     }
@@ -103,7 +103,7 @@ static void fields_are_continuous(const char *wake) {
     school_ok(residual_evaluate(residual, &residual_run, next, simulation->state->y, simulation->state->yp, before));
     memcpy(u, residual->flow->u, (size_t)n_points * sizeof *u);
     memcpy(v, residual->flow->v, (size_t)n_points * sizeof *v);
-    int jumped = 1;
+    bool jumped = true;
     school_ok(event_next(simulation->state, residual, simulation->consistent, &jumped));
     assert_int_equal(jumped, 0);
     double after[400];
@@ -176,7 +176,7 @@ TEST(impulses_conserve_circulation_and_meet_kutta) {
         school_ok(simulate_interval(simulation, 0.02 * n));
         // no shedding between events
         NEAR(s->y[fish->at.circulation], shed, 1e-12, 0);
-        int jumped = 0;
+        bool jumped = false;
         school_ok(event_next(simulation->state, simulation->residual, simulation->consistent, &jumped));
         assert_int_equal(jumped, 1);
         assert_int_equal(s->wake[0].n_vortex, n + 1);
@@ -201,7 +201,7 @@ TEST(impulses_by_rate_are_the_rate_times_the_interval) {
         double value[100];
         school_ok(residual_evaluate(simulation->residual, &residual_run, 0.02 * n, s->y, s->yp, value));
         const double rate = residual_kutta_rate(simulation->residual, 0, s->y);
-        int jumped = 0;
+        bool jumped = false;
         school_ok(event_next(s, simulation->residual, simulation->consistent, &jumped));
         NEAR(s->y[fish->at.circulation] - shed, 0.02 * rate, 1e-12, 1e-12);
         school_ok(simulation->integrator->restart(simulation->solver));

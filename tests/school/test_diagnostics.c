@@ -883,7 +883,7 @@ TEST(balances_that_begin_again_are_closed) {
     school_run(simulation, 0.1);
     struct state *const now = simulation->state;
     double work[2];
-    now->crossed = 1;
+    now->has_crossed = true;
     for (int f = 0; f < 2; f++) {
         work[f] = now->balance[f].work[WORK_ALL] += 3 + f;
         now->balance[f].initial_energy += 1;
@@ -896,5 +896,5 @@ TEST(balances_that_begin_again_are_closed) {
         NEAR(simulation->diagnostics->fish[f].energy_balance, 0, 1e-12, 0);
     }
     NEAR(simulation->diagnostics->momentum_balance[0], 0, 1e-12, 0);
-    assert_int_equal(now->crossed, -1);
+    assert_false(now->has_crossed);
 }

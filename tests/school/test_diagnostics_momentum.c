@@ -291,7 +291,7 @@ static void swim_among_many(const char *fluid, double tolerance, double balance[
         school_ok(wake_add_vortex(&simulation->state->wake[i % 2], simulation->school, simulation->state->t, x, y,
                                   2e-3 * school_random(&random)));
     }
-    school_ok(event_change(simulation->state, simulation->residual, simulation->consistent, 0));
+    school_ok(event_change(simulation->state, simulation->residual, simulation->consistent, false));
     diagnostics_restart(simulation->residual, simulation->state);
     school_ok(simulate_renew(simulation));
     for (int n = 0; n < 15; n++) school_ok(simulate_step(simulation));

@@ -400,7 +400,7 @@ static enum status runge_kutta_run(struct simulation *simulation, double end, in
         for (int i = 0; i < steps_per_event && status == STATUS_OK; i++) {
             status = runge_kutta_step(simulation, scratch + 3 * n, t + i * h, h, scratch);
         }
-        int jumped = 0;
+        bool jumped = false;
         if (status == STATUS_OK) {
             status = event_next(simulation->state, simulation->residual, simulation->consistent, &jumped);
         }
