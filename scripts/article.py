@@ -6,10 +6,11 @@
     scripts/article.py converged   the same with the converged and with the default model (a minute)
     scripts/article.py numbers     what the fish of Figure 6 does with another value of each number that the article leaves
                                    open (a minute)
-    scripts/article.py --check     see that every case does what the article says of it, and that the table figures is that
-                                   of doc/article.md
+    scripts/article.py --check     check that every case does what the article says of it, and that doc/article.md has the
+                                   table of the figures
 
-Exit codes: 0, with --check 1 if a case does not do what the article says or a number differs; 2 wrong command line.
+The exit code is 0, 1 if with --check a case does not do what the article says or a number differs, and 2 for a wrong command
+line.
 """
 
 import argparse

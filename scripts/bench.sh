@@ -3,7 +3,7 @@
 #
 #   scripts/bench.sh BUILD      BUILD: the folder with shoal and bench/
 #
-# Exit code 3 if a limit is missed. doc/performance.md explains the numbers. Use an idle machine.
+# The exit code is 3 if a limit is missed. doc/performance.md explains the numbers. The machine should be idle.
 set -euo pipefail
 
 build=$(realpath "${1:?usage: scripts/bench.sh BUILD}")

@@ -1,13 +1,14 @@
 #!/usr/bin/python3
-"""See that what documents and comments name is there.
+"""Check that everything that documents and comments name exists.
 
     scripts/check-docs.py
 
-In doc/*.md, README.md and CONTRIBUTING.md: files and folders, links and their anchors, names with a low line or brackets
-(functions, keys, variables; in doc/model.md those in backticks), tests of `make test TEST=...`, tables of
-`scripts/measure/DOCUMENT.py NAME`, sections of `build/verify/verify NAME`. In the comments of src, include and tests: files, and
-sections of documents. And no two tests have one name. Fenced blocks state their language, and a block of output follows the block of
-its command (scripts/documents.py). Exit codes: 0 all is there, 1 some is not.
+In doc/*.md, README.md and CONTRIBUTING.md these are files and folders, links and their anchors, names with a low line or
+brackets (functions, keys, variables; in doc/model.md only those in backticks), tests of `make test TEST=...`, tables of
+`scripts/measure/DOCUMENT.py NAME`, and sections of `build/verify/verify NAME`. In the comments of src, include and tests
+they are files and sections of documents. The script also checks that no two tests have the same name, that fenced blocks
+state their language, and that a block of output follows the block of its command (scripts/documents.py). The exit code is
+1 if anything is missing.
 """
 
 import glob

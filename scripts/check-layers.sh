@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Prove the rooms of src/: every name used by a file, by #include and by the symbols of the object, lies in the same
-# folder or in a folder further up the list, and files of a folder have no circular dependencies.
+# Check the layers of src/. Every name that a file uses, by #include or as a symbol of its object, must lie in the same
+# folder or in one further up the list, and files of a folder must not depend on each other in a circle.
 #
 #   scripts/check-layers.sh [BUILD]      BUILD: the folder with the objects, build by default
 #
-# External libraries stay in the folders named below, by headers and by functions.
+# Headers and functions of external libraries may only be used in the folders named below.
 set -euo pipefail
 
 # Lowest first. doc/architecture.md states the subject of each folder.

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 """Compare the output of commands in documents with the output of the same commands now.
 
-    scripts/documents.py FILE...            run the commands of these documents, list the output that differs
-    scripts/documents.py --seconds FILE...  only commands that take seconds; --rough: only differences beyond tolerances
+    scripts/documents.py FILE...            run the commands of these documents and list the output that differs
+    scripts/documents.py --seconds FILE...  run only commands that take seconds; --rough: list only differences beyond tolerances
     scripts/documents.py --write FILE...    replace output that differs, in place
 
-A document is one session in an empty folder, with the links build, cases, scripts and doc, and the names shoal and plot.py
-in PATH. Fenced blocks:
+The commands of a document run as one session in an empty folder, which has the links build, cases, scripts and doc, and
+shoal and plot.py are in PATH. The kind of a fenced block decides what is done with it:
 
     ```yaml      a file, named by a comment in the first line or by the sentence above: Write `pair.yaml`
     ```sh        commands; "sh minutes": skipped with --seconds, together with the output of these commands
@@ -15,11 +15,12 @@ in PATH. Fenced blocks:
                  and "..." in a line for any text. In a script a comment after print(...) is the output of this call.
     ```console   commands that are not run: for other machines, for hours
 
-Numbers agree to one unit of the last digit, integers above 99 to 2 %, numbers below 1e-6 to a factor of three; with
---rough numbers to 1 %, integers above 9 to 20 %, powers of ten (errors) to a factor of three. Measured times (columns wall, +-, us/eval.; CPU x)
-are not compared. Output is standard output, then standard error without the lines of progress.
+Two numbers agree if they differ by at most one unit of the last digit, integers above 99 by 2 %, and numbers below 1e-6 by
+a factor of three. With --rough, numbers may differ by 1 %, integers above 9 by 20 %, and powers of ten and error bars by a
+factor of three. Measured times (columns wall, +-, us/eval.; CPU x) are not compared. The output of a command is its
+standard output, followed by its standard error without the lines of progress.
 
-Exit codes: 0 all output is true, 1 some differs or a command failed, 2 wrong command line.
+The exit code is 0 if all output is true, 1 if some differs or a command failed, and 2 for a wrong command line.
 """
 
 import argparse

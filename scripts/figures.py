@@ -1,18 +1,18 @@
 #!/usr/bin/python3
 """Draw the figures of README.md and doc/*.md that are older than their inputs, and write doc/gallery.md.
 
-    scripts/figures.py [NAME...]     draw what is older than its inputs, of all figures or of these
+    scripts/figures.py [NAME...]     draw those of all figures, or of these, that are older than their inputs
     scripts/figures.py --list        say which figures are older than which of their inputs, and what they cost
     scripts/figures.py --all         draw all
     scripts/figures.py --page        print doc/gallery.md
 
-A figure comes from the commands of one row of a table below. Its inputs are the *case* (the commands, and every key of
-the case with its value), the *script* that draws, and the *results* of the program (tests/data/results.tsv, to three
-digits). doc/figures/inputs.tsv has a checksum of each, and the CPU seconds of the commands. Results are kept in a folder
-(--data, build/figures) as long as case and results are the same. Pictures have few colours, those of the gallery at most
-60 kB, a moving one at most 3 MB.
+The commands of one row of a table below make a figure. Its inputs are the *case* (the commands, and every key of the case
+with its value), the *script* that draws, and the *results* of the program (tests/data/results.tsv, to three digits).
+doc/figures/inputs.tsv has a checksum of each, and the CPU seconds of the commands. Result files are kept in a folder (--data,
+by default build/figures) as long as case and results stay the same. Pictures have few colours; those of the gallery have at
+most 60 kB, a moving one at most 3 MB.
 
-Exit codes: 0, with --list 1 if a figure is older than its inputs.
+The exit code is 0, or 1 if with --list a figure is older than its inputs.
 """
 
 import argparse

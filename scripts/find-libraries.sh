@@ -3,10 +3,10 @@
 #
 #   scripts/find-libraries.sh FOLDER COMPILER...    write FOLDER/cppflags, FOLDER/libraries and FOLDER/libraries.log
 #
-# A library is where a small program that uses it compiles and links. It is looked for in the folder that SUNDIALS_DIR,
-# SUITESPARSE_DIR, NETCDF_DIR, LAPACKE_DIR, YAML_DIR or ZLIB_DIR names, and then nowhere else; else as pkg-config says, in
-# the environment of conda, in the prefix of Homebrew, where the compiler looks by itself, and in /usr/local. CPPFLAGS
-# and LDFLAGS apply. A missing library costs one line with the names of the packages.
+# A library is found where a small program that uses it compiles and links. If SUNDIALS_DIR, SUITESPARSE_DIR, NETCDF_DIR,
+# LAPACKE_DIR, YAML_DIR or ZLIB_DIR names a folder, its library is looked for there and nowhere else. Otherwise the script
+# tries what pkg-config says, the environment of conda, the prefix of Homebrew, the places where the compiler looks by
+# itself, and /usr/local. CPPFLAGS and LDFLAGS apply. For a missing library it prints one line with the names of the packages.
 set -euo pipefail
 
 folder=${1:?usage: scripts/find-libraries.sh FOLDER COMPILER...}

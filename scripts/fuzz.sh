@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Fuzz for a time, all targets at once, with the sanitizers; libFuzzer where clang is there, else the driver of
-# tests/fuzz with one seed after the other. Stops at the first bad input and keeps the input.
+# Fuzz all targets at once for a given time, with the sanitizers. libFuzzer does it if clang is installed, else the driver
+# of tests/fuzz with one seed after the other. The script stops at the first bad input and keeps it.
 #
 #   scripts/fuzz.sh SECONDS
 set -euo pipefail

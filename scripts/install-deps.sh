@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Install the Debian packages that building, testing and the scripts need: only those that are missing, without questions.
-# Says and changes nothing when all are there. Needs root, or sudo without a password.
+# Install the Debian packages that building, testing and the scripts need. Only missing packages are installed, without
+# questions; if all are there, the script says and changes nothing. It needs root, or sudo without a password.
 #
 #   scripts/install-deps.sh [PACKAGE|@SET]...      additional packages, or one of the sets below
 set -euo pipefail

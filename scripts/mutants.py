@@ -4,11 +4,12 @@
     scripts/mutants.py [-j N] [ID...]
     scripts/mutants.py --check
 
-Each mutant of tests/mutants/mutants.txt is built in a copy of this tree, and the tests of the mutant run in the copy. A
-mutant is killed when a test fails. Without an ID all mutants run. --check only compares the table with the sources.
+A mutant is the program with one small error. Each mutant of tests/mutants/mutants.txt is built in a copy of this tree, in
+which its tests then run, and it is killed if one of them fails. Without an ID all mutants run. --check only compares the
+table with the sources.
 
-Exit codes: 0 at least 9 in 10 are killed, 1 fewer are killed, 2 the table does not fit the sources, or the tests fail on
-the unchanged program.
+The exit code is 0 if at least 9 in 10 are killed, 1 if fewer are, and 2 if the table does not fit the sources or the tests
+fail on the unchanged program.
 """
 
 import argparse

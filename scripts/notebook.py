@@ -2,10 +2,10 @@
 """Run the notebook doc/shoal.ipynb and write its outputs into it, so that a reader sees them without running it.
 
     scripts/notebook.py            run all cells and replace the outputs
-    scripts/notebook.py --check    see that what they print is what the notebook shows
+    scripts/notebook.py --check    check that they print what the notebook shows
 
-Exit codes: 0, with --check 1 if a cell prints something else; 2 wrong command line. Needs nbconvert and ipykernel (Debian:
-jupyter-nbconvert, python3-ipykernel).
+The exit code is 0, 1 if with --check a cell prints something else, and 2 for a wrong command line. The script needs nbconvert
+and ipykernel (Debian: jupyter-nbconvert, python3-ipykernel).
 """
 
 import argparse

@@ -12,9 +12,9 @@
 #   wheel     the wheel of this machine, with its libraries inside: demo, picture, Python, in a chroot without them
 #   packages  the steps of scripts/packaging/Dockerfile, in two chroots: make deb, and a trial of the packages
 #
-# Needs root and a mirror of Debian, taken from the sources of apt; skips all platforms, with a reason, where a chroot
-# cannot be made. Leaves logs in build/platforms. --write replaces the rows of these platforms in the table of FILE that
-# follows the line `make test-platforms`. KEEP=1 keeps the chroots, REUSE=1 takes those that were kept.
+# The script needs root and a mirror of Debian, which it takes from the sources of apt. Where a chroot cannot be made it
+# skips all platforms and gives the reason. Logs are left in build/platforms. --write replaces the rows of these platforms in
+# the table of FILE that follows the line `make test-platforms`. KEEP=1 keeps the chroots, REUSE=1 takes those that were kept.
 # The last line printed counts the checks: "N passed, N failed, N skipped".
 set -euo pipefail
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Run test programs in C, and a run that is stopped and resumed, under valgrind: every report is an error.
+# Run test programs in C, and a run that is stopped and resumed, under valgrind. Every report counts as an error.
 #
 #   scripts/valgrind.sh PROGRAM TEST...
 set -euo pipefail

@@ -5,7 +5,8 @@
 #
 # PROGRAM is build/verify/verify. Each section writes its table FOLDER/SECTION.tsv; two sections run at a time, and
 # their rows are printed in the order of the report, FOLDER/report.md. DOCUMENT receives the summary. Run it from the top
-# of the tree: some sections read cases/. Exit code: 0, 3 if a bound is missed, 1 if a section or the report fails.
+# of the tree, because some sections read cases/. The exit code is 0, 3 if a bound is missed, and 1 if a section or the
+# report fails.
 set -euo pipefail
 export LC_ALL=C
 

@@ -8,10 +8,10 @@ Each of these scripts measures the tables of one document and is called after it
     scripts/measure/numerics.py --write     the same, and replace the tables in place
     scripts/measure/numerics.py --list      names of the tables, with a line about each
 
-The line above a table contains its command, for example "`scripts/measure/numerics.py tolerance`". The scripts run
-build/shoal in a temporary folder. Counts are exact; seconds are CPU seconds of one machine, and ratios of seconds come
-from the same table. Rows agree like the output of commands (scripts/documents.py), CPU times to a factor of two. Exit
-codes: 0 all rows agree, 1 some differ.
+In a document, the line above a table contains its command, for example "`scripts/measure/numerics.py tolerance`". The
+scripts run build/shoal in a temporary folder. Counts are exact. Seconds are CPU seconds of one machine, and ratios of seconds
+come from the same table. Rows are compared as scripts/documents.py compares output, and CPU times may differ by a factor of
+two. The exit code is 1 if some rows differ.
 """
 
 import argparse

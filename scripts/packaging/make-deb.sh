@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Build the Debian packages and check the packages with lintian: scripts/packaging/make-deb.sh FOLDER VERSION
+# Build the Debian packages and check them with lintian: scripts/packaging/make-deb.sh FOLDER VERSION
 # DEB_BUILD_OPTIONS=nocheck leaves out the tests in C.
 set -euo pipefail
 

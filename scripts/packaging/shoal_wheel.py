@@ -9,8 +9,8 @@ make builds libshoal and the program; setuptools packs them with the Python pack
     shoal/scripts  plot.py and animate.py, which the commands shoal-plot and shoal-animate run
     shoal/libs     with libraries=inside: the shared libraries that libshoal and the program need
 
-The wheel needs the shared libraries of SUNDIALS, SuiteSparse, LAPACK, NetCDF, libyaml and zlib that it was built with, and
-is for this system and its like. `pip wheel . --config-settings libraries=inside` packs them, under names that no other
+The wheel needs the shared libraries of SUNDIALS, SuiteSparse, LAPACK, NetCDF, libyaml and zlib with which it was built, and
+works only on systems like this one. `pip wheel . --config-settings libraries=inside` packs them, under names that no other
 package uses, as auditwheel does; the wheel then runs with the C library of this system or a later one.
 """
 
