@@ -19,7 +19,7 @@
 /* Row i of the list of warnings about a result. */
 static int list_warning(int i, struct result_listed *listed) {
     if (i >= N_WARNINGS) return 0;
-    *listed = (struct result_listed){warnings_words[i].subject, "", "", warnings_words[i].cause, "", NULL};
+    *listed = (struct result_listed){warnings_table[i].subject, "", "", warnings_table[i].cause, "", NULL};
     return 1;
 }
 

@@ -29,11 +29,16 @@ enum warning {
 };
 enum { WARNING_BYTES = 384 /* of a line */ };
 
-/* What each warning is about and when it appears, for the documents and `shoal keys --output`. */
-struct warning_words {
+/* A warning: what it is about and when it appears, for the documents and `shoal keys --output`; and a function that
+ * writes the line and returns the size of the defect, of which more than 1 is a warning. The function is either about a
+ * fish, whose name in the line is who, or about the school. */
+struct warning_subject;
+struct warning_row {
     const char *subject, *cause;
+    double (*of_fish)(const struct warning_subject *subject, const char *who, char line[WARNING_BYTES]);
+    double (*of_school)(const struct warning_subject *subject, char line[WARNING_BYTES]);
 };
-extern const struct warning_words warnings_words[N_WARNINGS];
+extern const struct warning_row warnings_table[N_WARNINGS];
 
 /* The length over which the tail bends at the beat frequency, with the added mass there, m; infinite without a beat or
  * without added mass. doc/numerics.md, section 5. */
@@ -49,9 +54,9 @@ void warnings_divergence(const struct school *school, const struct state *state,
 enum status warnings_refuse(const struct school *school, const struct state *state,
                             const struct diagnostics *diagnostics);
 
-/* Write the line of a warning, without a line break, and return 1; return 0 if the warning does not apply. diagnostics
- * and the last sums of the residual at bodies must be those of the event of the state. */
-int warnings_line(enum warning warning, struct residual *residual, const struct state *state,
-                  const struct diagnostics *diagnostics, char line[WARNING_BYTES]);
+/* Write the line of a warning, without a line break, and return true; return false if the warning does not apply.
+ * diagnostics and the last sums of the residual at bodies must be those of the event of the state. */
+bool warnings_line(enum warning warning, struct residual *residual, const struct state *state,
+                   const struct diagnostics *diagnostics, char line[WARNING_BYTES]);
 
 #endif
