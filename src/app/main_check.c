@@ -17,7 +17,7 @@
 #include "school/warnings.h"
 #include "steady/steady.h"
 
-/* CPU time of the command, and the part for estimates [s]; the remainder is for simulate_start. */
+/* The CPU time of the command, and the part of it that is for estimates [s]; the rest is for simulate_start. */
 static const double time_limit = 0.4, patience = 0.25;
 
 /* The findings on all members of a study; a case without a sweep has one member. */
@@ -106,7 +106,7 @@ static void print_findings(const struct checked *checked) {
         return;
     }
 
-    // of the members that were not examined, as many are expected to fail as of the examined members
+    // expect as large a part of the other members to fail as of those that were examined
     char duration[TEXT_DURATION_BYTES];
     const int n_examined = checked->n_estimated + checked->n_failed;
     const double megabytes = 1e-6 * checked->bytes;

@@ -34,7 +34,7 @@ static const struct {
     {.number = SIGXCPU},
 };
 
-/* The end of a command that does not catch signals: no part of a file stays. */
+/* End a command that does not catch signals, and leave no part of a file. */
 static void on_end(int number) {
     durable_remove_parts();
     signal(number, SIG_DFL);

@@ -187,7 +187,7 @@ enum status main_study(const struct request *request) {
     return study_run_in_folder(&values, request, "-study");
 }
 
-/* Set what the quantities are compared with: the file of a case, or a word that the case itself understands. */
+/* Set the case with which the quantities are compared: a file, or a word that the case itself understands. */
 static enum status set_against(const struct request *request, const struct case_values *values,
                                struct sweep_error *error) {
     const char *const against = request->against;
@@ -211,8 +211,8 @@ static enum status set_against(const struct request *request, const struct case_
     return STATUS_OK;
 }
 
-/* Add the inputs of the command line to the assignment of `error`, whose last brace they precede; the case reads their
- * names. */
+/* Add the inputs of the command line to the assignment of `error`, before its last brace; the case reads their names.
+ * */
 static enum status add_inputs(const struct request *request, struct text *assignment) {
     assignment->text[--assignment->length] = '\0';
     if (request->sensitivity) {

@@ -53,8 +53,8 @@ void say_progress_start(struct progress *progress) {
     *progress = (struct progress){.terminal = isatty(STDERR_FILENO), .drawn_at = -1};
 }
 
-/* Print the parts of a line, the most important first: on a terminal as many as fit into its width, without the last
- * column, where some terminals begin a new line; all in a log. */
+/* Print the parts of a line, beginning with the most important one: in a log all of them, on a terminal as many as fit
+ * into its width, without the last column, where some terminals begin a new line. */
 static void progress_print(struct progress *progress, int n, char part[][PART_BYTES]) {
     struct winsize size;
     const int columns = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;

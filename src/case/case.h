@@ -32,14 +32,14 @@ void case_free(struct case_values *values);
  * by --set, without a sweep. Fails with STATUS_CASE, naming the member. Free with case_free. */
 enum status case_member(struct case_values *values, const struct case_values *study, int member);
 
-/* case_show.c: the complete case with the values of all keys, in an arena, as a case file from which case_read reads
- * the same bits. */
+/* The complete case with the values of all keys, in an arena, written as a case file from which case_read reads the
+ * same bits (case_show.c). */
 char *case_show(struct arena *arena, const struct case_values *values);
 
-/* case_keys.c: print path, type, default, range, unit and meaning of every key, as text or as JSON (the source of
- * doc/cases.md and doc/case.schema.json). Tested by tests/app/test_command.sh and tests/extra/test_manual.sh. With a
- * word, print only the keys with the word in path, synonyms, words or meaning (NULL: all keys). Returns the number of
- * printed keys. */
+/* Print path, type, default, range, unit and meaning of every key, as text or as JSON, from which doc/cases.md and
+ * doc/case.schema.json are made (case_keys.c). With a word, print only the keys that have the word in path, synonyms,
+ * words or meaning (NULL: all keys). Returns the number of printed keys. Tested by tests/app/test_command.sh and
+ * tests/extra/test_manual.sh. */
 int case_keys(struct arena *arena, FILE *stream, bool as_json, const char *word);
 
 /* case_show.c: a commented case to start from, complete and valid. */

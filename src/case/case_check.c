@@ -24,7 +24,8 @@ static const double max_bytes = 1e12, bytes_per_vortex = 950;
 /* Within these bounds a double resolves positions to 1e-9 lengths and phases to 1e-6 cycles. */
 static const double max_lengths = 1e6, max_cycles = 1e9;
 
-/* The case, and the list of errors or notes. fish: the fish being checked, and its index. */
+/* The case that is being checked, and the list of its errors or notes; fish and its index if the check is about a fish.
+ * */
 struct check {
     const struct case_values *values;
     const struct case_tree *tree;
@@ -133,8 +134,8 @@ static void check_swept_interval(const struct check *check, const char *path, do
     }
 }
 
-/* Refuse parts of the model that a method cannot integrate. verlet: velocity-dependent forces, and unknowns besides
- * positions; imex: forces in proportion to accelerations. */
+/* Refuse parts of the model that a method cannot integrate. verlet takes no forces that depend on velocities and no
+ * unknowns besides positions; imex takes no forces in proportion to accelerations. */
 static void check_method(const struct check *check) {
     const struct school_parameters *const school = &check->values->school;
     const struct body_parameters *const body = &check->fish->body;
@@ -574,7 +575,7 @@ static int by_name_of(const void *name, const void *fish) {
     return strcmp(name, (*(const struct fish_parameters *const *)fish)->name);
 }
 
-// the fish whose place the law of fish f counts from; -1: none of this name
+// the fish from which the law of fish f counts its place; -1: no fish has this name
 static int find_leader(const struct check *check, int f) {
     const struct fish_parameters *const fish = check->values->school.fish;
     const struct fish_parameters **const found =
@@ -598,7 +599,7 @@ static void check_law_place(const struct check *check) {
     complain_if(control->of[0] != '\0' && leader < 0, check, path, "no fish has the name '%.60s'", control->of);
     complain_if(leader == f, check, path, "a fish cannot hold a place beside itself: name another fish");
 
-    // follow the leaders to a fish that leads only; a longer way than the school is a cycle
+    // follow the leaders until a fish has none; a way that is longer than the school goes round in a circle
     int last = leader, n = 0;
     while (last >= 0 && last != f && n++ < school->n_fish) {
         const struct control_parameters *const next = &school->fish[last].control;
@@ -829,8 +830,9 @@ static void note_fish(const struct check *check) {
 
 // ---- switched models
 
-/* The written key that switches the derived default of a key of the fish being checked to another model than the
- * initial value: another word, a term that vanishes or appears, or a list that is empty or not; NULL: none. */
+/* The key in the case that switches the derived default of a key of the fish to another model than the initial value;
+ * NULL: none. It switches if it has another word, if a term vanishes or appears, or if a list becomes empty or ceases
+ * to be. */
 static const struct key *switching_key(const struct check *check, const struct key *key,
                                        const struct case_values *initial) {
     const bool is_of_fish = case_table_is_of_fish(key);
@@ -866,7 +868,7 @@ void case_notes(const struct case_values *values, const struct case_values *init
         check.fish = &values->school.fish[check.index];
         note_fish(&check);
 
-        // each written key that switches derived defaults for this fish, with these defaults
+        // go through each key of the case that switches derived defaults of this fish, with these defaults
         for (int first = 0; first < case_table_n; first++) {
             const struct key *const cause =
                 case_table[first].follows ? switching_key(&check, &case_table[first], initial) : NULL;

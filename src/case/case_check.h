@@ -1,5 +1,5 @@
-/* case_check.h: relations between keys with valid values, and values that are allowed but implausible: an angle in
- * radians, a length in centimetres, a body softer than jelly, a wave that travels forwards. Tested by
+/* case_check.h: checks how the values of several keys fit together, and notes values that are allowed but implausible:
+ * an angle in radians, a length in centimetres, a body softer than jelly, a wave that travels forwards. Tested by
  * tests/case/test_case.c and tests/case/bad_cases.txt. */
 #ifndef CASE_CHECK_H
 #define CASE_CHECK_H

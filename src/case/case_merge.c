@@ -77,8 +77,8 @@ static enum status read_file(struct case_tree *tree, struct yaml_source *source,
 static struct yaml_node *read_source(struct case_tree *tree, const struct yaml_source *source, const char *folder,
                                      const struct open_file *self, struct yaml_errors *errors);
 
-/* Read the file of an entry of an include list, relative to the folder, which ends at the last slash, or to the cases
- * of the installation; merge the file over *base. */
+/* Read a file of an include list, and merge it over *base. Its name is relative to the folder, which ends at the last
+ * slash, or else to the cases of the installation. */
 static void include_file(struct case_tree *tree, const struct yaml_node *node, const char *folder,
                          const struct open_file *by, struct yaml_errors *errors, struct yaml_node **base) {
     if (node->kind != YAML_SCALAR || node->text[0] == '\0') {

@@ -18,10 +18,10 @@ struct case_tree {
     struct yaml_source **source; /* the case file first */
 };
 
-/* Read a case from the file origin or, with a text, from the text, into a tree that has an arena only. origin: also the
- * name of the text in messages; folder: the folder of the includes of a text (NULL or "": the working directory).
- * Defects of the case are added to errors, and tree->root is then NULL. Fails with STATUS_FILE if the case file cannot
- * be read. */
+/* Read a case into a tree that has only an arena so far: from the text, or without one from the file origin. origin is
+ * also the name of the text in messages; folder is the folder of the includes of a text (NULL or "": the working
+ * directory). Defects of the case are added to errors, and tree->root is then NULL. Fails with STATUS_FILE if the case
+ * file cannot be read. */
 enum status case_merge_read(struct case_tree *tree, const char *origin, const char *text, size_t length,
                             const char *folder, struct yaml_errors *errors);
 

@@ -99,7 +99,7 @@ static void derive_wake(const struct key_place *at) {
     set_default(&wake->lifetime.seconds, wake->lifetime.beats * period);
     set_default(&wake->lifetime.seconds, 2);
 
-    // a wake ends abruptly for the modes of a school that does not beat, unless it decays over most of its life
+    // to the modes of a school that does not beat a wake seems to end abruptly, unless it decays over most of its life
     const double part = period > 0 ? 0.25 : 0.75;
     if (isnan(wake->decay.seconds) && period > 0) set_default(&wake->decay.beats, part * wake->lifetime.beats);
     set_default(&wake->decay.seconds, wake->decay.beats * period);

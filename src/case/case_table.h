@@ -1,5 +1,5 @@
-/* case_table.h: how the table of keys of a case file is built, and how it is searched; the values of each type of key.
- * Tested by tests/case/test_case.c. */
+/* case_table.h: the table of keys of a case file, with the types and ranges of their values and the functions that
+ * search it. Tested by tests/case/test_case.c. */
 #ifndef CASE_TABLE_H
 #define CASE_TABLE_H
 

@@ -53,7 +53,8 @@ int sweep_member_value(const struct case_values *study, int member, int axis);
 bool sweep_is_steady(const struct case_values *study);
 int sweep_member_before(const struct case_values *study, int member);
 
-/* The number of a value of the first key of an axis: of "first", of an equal number or of the same text; -1: none. */
+/* The number of a value of the first key of an axis: the value is "first", or an equal number, or the same text; -1:
+ * there is none. */
 int sweep_find_value(const struct sweep_axis *axis, const char *wanted);
 
 /* The member whose results those of a member are divided by: it has another value on the axis with `relative_to`, and

@@ -86,7 +86,8 @@ static const char *short_name(const struct sweep_error_key *key) {
 double sweep_error_order(const struct case_values *values, const struct sweep_error_key *key) {
     if (strcmp(key->path, "solver.step") == 0) return methods_table[values->solver.method].order;
 
-    // continuous shedding is of second order, towards a wake that is wrong next to the edge (doc/numerics.md, 5)
+    // continuous shedding is of second order, but it converges to a wake that is wrong next to the edge
+    // (doc/numerics.md, section 5)
     const bool is_interval = strcmp(key->path, "time.shedding_interval") == 0;
     if (is_interval && values->school.wake.shedding == SHEDDING_CONTINUOUS) return 2;
     return key->order;

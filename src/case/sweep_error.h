@@ -20,7 +20,7 @@ enum sweep_error_kind {
     SWEEP_POINTS,   /* a number of points n: grid spacing 1/(n - 1) */
     SWEEP_SPACING,  /* the value is the grid spacing, or a tolerance */
     SWEEP_DURATION, /* the larger the better: 1/duration is the grid spacing */
-    SWEEP_MODEL,    /* a choice of the model, varied with `models`: the change is printed, it is no error */
+    SWEEP_MODEL,    /* a choice of the model, varied with `models`; the change is printed and is not an error */
     SWEEP_INPUT     /* a number of the case, varied for the derivative of a quantity */
 };
 

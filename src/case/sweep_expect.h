@@ -15,7 +15,7 @@ struct sweep_condition {
     char *value;
 };
 
-/* An expectation of the ends of members: of all, or of those that have the values of where. */
+/* An expectation of how members end: of all of them, or of those that have the values of where. */
 struct sweep_expectation {
     char *fails; /* expected words of the message of failed members, then the only expectation; NULL: must not fail */
     uint64_t of; /* bit q: of quantity q */

@@ -201,7 +201,7 @@ const char *yaml_tree_describe(const struct yaml_node *node, char *buffer, size_
 
 // ---- events of libyaml
 
-/* The parser holds one event at a time, and is released with an arena of its own, also on a lack of memory. */
+/* The parser holds one event at a time. Its own arena releases it, also if memory is lacking. */
 struct reader {
     yaml_parser_t parser;
     yaml_event_t event;
@@ -493,7 +493,7 @@ double yaml_tree_positive(const struct yaml_node *map, const char *path, const c
 // ---- writing
 
 void yaml_write_scalar(struct text *text, const char *scalar) {
-    // a string of ordinary characters needs no quotes in YAML, also inside [ ] and { }
+    // a string of ordinary characters needs no quotes in YAML, not even inside [ ] and { }
     static const char ordinary[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./+- ";
     const size_t length = strlen(scalar);
     const bool is_indicator = strcmp(scalar, "-") == 0 || strncmp(scalar, "- ", 2) == 0 ||

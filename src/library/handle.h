@@ -37,7 +37,7 @@ struct shoal {
     struct state *before;                  /* state at the last event, during a step that can be stopped; or NULL */
     bool is_renewed;                       /* the integrator has restarted at this event */
     struct integrator_counts when_reached; /* if is_renewed: the counts before the restart */
-    bool is_torn; /* lack of memory has ended a computation: what is not state can only be renewed or freed */
+    bool is_torn; /* lack of memory has ended a computation; whatever is not state can only be renewed or freed */
     bool has_failed;
     char failure[1024]; /* message of the step that failed */
     struct record record;

@@ -198,7 +198,8 @@ int shoal_step(struct shoal *run) {
     if (status == STATUS_SOLVER) handle_fail(run);
     TRY(status);
 
-    // the integrator restarts at every checkpoint of the case, with or without a result file: same bits in both runs
+    // restart the integrator at every checkpoint of the case, with or without a result file, so that both runs have the
+    // same bits
     const struct case_values *const values = &run->shared->values;
     const long interval = lround(values->time.checkpoint_interval / values->school.shedding_interval);
     const bool is_due = interval > 0 && run->simulation->state->event % interval == 0;
@@ -258,7 +259,7 @@ static enum status read_variable(struct shoal *run, const void *data) {
     const struct reading *const reading = data;
     const int i = reading->row;
 
-    // request the buffer once, for the largest size in this run: pointers of callers stay valid
+    // request the buffer once, for the largest size in this run, because pointers of callers have to stay valid
     const struct result_variable *const variable = &result_table[i];
     const struct school *const school = run->simulation->school;
     size_t length[RESULT_N_DIMENSIONS];

@@ -1,6 +1,6 @@
-/* checkpoint.h: the file from which a stopped run continues. It holds all data of a run that the result file lacks. The
- * table of the state (state/state.h) drives writing, reading and the summary. doc/reliability.md. Tested by
- * tests/result/test_checkpoint.c. */
+/* checkpoint.h: the file from which a stopped run continues (doc/reliability.md). It holds everything about a run that
+ * the result file lacks, and the table of the state (state/state.h) drives how it is written, read and summarised.
+ * Tested by tests/result/test_checkpoint.c. */
 #ifndef CHECKPOINT_H
 #define CHECKPOINT_H
 
@@ -27,8 +27,8 @@ struct checkpoint {
     size_t n; /* the whole file, after checkpoint_read */
 };
 
-/* Write the checkpoint of a state, as durable_replace does. Of *checkpoint, effective, result, places, rows, totals and
- * wall_time are used. arena: for scratch. Fails with STATUS_FILE. */
+/* Write the checkpoint of a state, as durable_replace does. Uses effective, result, places, rows, totals and wall_time
+ * of *checkpoint. arena: for scratch. Fails with STATUS_FILE. */
 enum status checkpoint_write(struct arena *arena, const char *path, const char *previous,
                              const struct checkpoint *checkpoint, const struct state *state,
                              const struct school *school);
@@ -44,7 +44,7 @@ enum status checkpoint_check_program(const struct checkpoint *checkpoint);
  * can then only be freed. */
 enum status checkpoint_set_state(const struct checkpoint *checkpoint, struct state *state, const struct school *school);
 
-/* Fail with STATUS_FILE where another file than a checkpoint of the result of this name is at path. arena: for
+/* Fail with STATUS_FILE if the file at path is anything but a checkpoint of the result of this name. arena: for
  * scratch. */
 enum status checkpoint_check_target(struct arena *arena, const char *path, const char *result);
 

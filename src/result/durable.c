@@ -61,8 +61,8 @@ int durable_lock(int descriptor, uint64_t first, uint64_t n) {
 #endif
 }
 
-/* Unlock a file. A fork of the process shares the descriptor: closing the descriptor here would leave the lock to the
- * fork. */
+/* Unlock a file. A fork of the process shares the descriptor, so closing the descriptor here would leave the lock to
+ * the fork. */
 static void unlock(int descriptor) {
 #ifdef F_OFD_SETLK
     struct flock whole = {.l_type = F_UNLCK, .l_whence = SEEK_SET};
@@ -78,7 +78,7 @@ bool durable_has_name(int descriptor, const char *path) {
            open_file.st_dev == named.st_dev;
 }
 
-/* The bytes of a file that are locked: by the claim of a run, and by a part in the making. */
+/* The bytes of a file that are locked by the claim of a run, and by a part that is being made. */
 enum { BYTE_OF_CLAIM = 0, BYTE_OF_PART = 1 };
 
 /* Open a file and lock a byte of the inode that then still has the name; errno or 0. */
@@ -124,7 +124,7 @@ static bool part_name_of(const char *target, char name[PATH_MAX]) {
 
 // ---- a file in the making
 
-/* The names of the unpublished parts of this process, for an end by a signal or for lack of memory. */
+/* The names of the unpublished parts of this process, which an end by a signal or for lack of memory has to remove. */
 enum { MAX_PARTS = 8 };
 static struct {
     _Atomic pid_t process; /* 0: free. A fork does not remove the parts of its parent */

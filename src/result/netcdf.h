@@ -48,8 +48,8 @@ enum status netcdf_create(struct netcdf_writer *writer, const char *path, const 
  * STATUS_FILE or STATUS_MEMORY; netcdf_finish then does nothing. */
 enum status netcdf_continue(struct netcdf_writer *writer, const char *path);
 
-/* Replace an attribute of a file that nobody writes by one of no more bytes, and make that survive a power cut. Rows
- * that are missing stay missing. Fails with STATUS_FILE or STATUS_MEMORY. */
+/* Replace an attribute of a file that nobody is writing by one of no more bytes, so that this survives a power cut.
+ * Rows that are missing stay missing. Fails with STATUS_FILE or STATUS_MEMORY. */
 enum status netcdf_patch(const char *path, const char *name, size_t n, const char *bytes);
 
 /* Define a dimension (length 0: grows by rows) or a variable; returns the number of the dimension or variable. */

@@ -411,7 +411,8 @@ enum status result_file_continue(struct arena *arena, struct result_file **resul
     return status;
 }
 
-/* Whether the name of the file is another file's, or nobody's: the rows then are in a file that nobody finds. */
+/* Whether the name of the file belongs to another file by now, or to none: the rows are then in a file that nobody
+ * finds. */
 static bool file_has_lost_name(const struct result_file *result) {
     const struct durable_part *const part = &result->writer.part;
     return part->name[0] == '\0' && !durable_has_name(part->descriptor, part->target);
@@ -458,7 +459,7 @@ enum status result_file_close(struct result_file *result, const char *run_status
     // the rows are safe before the file says how the run has ended
     if (is_published) netcdf_sync(writer, true);
 
-    // after a failed write the buffer of NetCDF cannot be written; another file of the name is not ours
+    // after a failed write the buffer of NetCDF cannot be written, and another file of the name is not ours
     const bool is_lost = file_has_lost_name(result);
     if (is_published && !is_lost && writer->code != 0) netcdf_reopen(writer);
     result_file_note(result, RESULT_STATUS, run_status);

@@ -84,7 +84,7 @@ struct result_origin {
  * the end of the arena. Fails with STATUS_FILE or STATUS_MEMORY; *result is then NULL. */
 enum status result_file_create(struct arena *arena, struct result_file **result, const struct result_origin *origin);
 
-/* Write the steady state into a file with these variables: NaN and 0 before. */
+/* Write the steady state into a file with these variables, which are NaN and 0 before. */
 void result_file_steady(struct result_file *result, const struct school *school, const struct steady_values *steady);
 
 /* Flush all rows to disk, set the attribute run_status, and rename the file to the path. Fails with

@@ -30,8 +30,8 @@ struct result_kind {
     int (*listed)(int i, struct result_listed *listed);
 };
 
-/* Print a summary of a file as text, only the case in the file, or a summary as JSON (result_json_summary). arena: for
- * scratch. Fails with STATUS_FILE. */
+/* Print a summary of a file as text or as JSON (result_json_summary), or only the case in the file. arena: for scratch.
+ * Fails with STATUS_FILE. */
 enum result_info_form { RESULT_INFO_TEXT, RESULT_INFO_CASE, RESULT_INFO_JSON };
 enum status result_kind_info(struct arena *arena, int n_kinds, const struct result_kind *kinds, const char *path,
                              enum result_info_form form, FILE *stream);

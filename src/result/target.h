@@ -1,7 +1,6 @@
-/* target.h: checks whether shoal may write to a path. Tested by tests/result/test_target.c.
- *
- * Every file of shoal can be recognised by its first bytes. A file without them was written by another program or by
- * hand, and no option lets shoal replace it. */
+/* target.h: decides whether shoal may write to a path. Every file of shoal can be recognised by its first bytes. A file
+ * without them was written by another program or by hand, and no option lets shoal replace it. Tested by
+ * tests/result/test_target.c. */
 #ifndef TARGET_H
 #define TARGET_H
 

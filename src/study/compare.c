@@ -62,7 +62,7 @@ static void sweep_add_member(struct text *sweep, int method, int order, const ch
 /* Add a method with each tolerance or step. rtol: tolerance of members with fixed steps. */
 static enum status sweep_add_method(struct text *sweep, const char *word, const struct compare_options *options,
                                     const char *rtol, int ida_order) {
-    // the row of the table of methods, and the order: "ida2" is ida of order 2, "ida" that of the case
+    // find the row in the table of methods, and the order: "ida2" is ida of order 2, "ida" has the order of the case
     const struct method_properties *const ida = &methods_table[METHOD_IDA];
     const size_t n = strlen(ida->word);
     int method = -1, order = 0;
@@ -158,7 +158,7 @@ static void set_number(const struct member_file *member, const char *quantity, d
     *member_file_place(member, member_file_quantity_number(quantity), 0, 0) = value;
 }
 
-/* Set the cost of a member to the end: beyond the time limit, extrapolate from what the member has reached. */
+/* Set what a member costs until the end. If it exceeded the time limit, extrapolate from what it has reached. */
 static void fill_cost(const struct case_values *study, const struct member_file *member) {
     static const char *const reached[] = {
         "time", "steps", "residual_evaluations", "newton_iterations", "jacobian_evaluations", "wall_time"};

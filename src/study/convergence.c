@@ -14,12 +14,12 @@
  * from p' to p. */
 static const double least_part = 0.5, most_above = 0.5, most_change = 0.8;
 
-/* Roache's safety factor; safety factors of the largest difference of fewer than four levels, if the base is the finest
- * level and otherwise; multiple of the noise below which differences have no meaning. */
+/* Roache's safety factor; the safety factors of the largest difference of fewer than four levels, if the base is the
+ * finest level and if it is not; and the multiple of the noise below which differences have no meaning. */
 static const double safety = 1.25, without_finer = 1.5, with_finer = 2, of_noise = 3;
 
-/* How much finer than the stated level the finest level is, so that the levels between both suffice without an order;
- * and for tolerances. */
+/* How much finer than the stated level the finest one has to be, so that the levels between them suffice although they
+ * have no order; and the same for tolerances. */
 static const double enough_finer = 1.9, tenth = 9;
 
 /* Values that differ by less than this part of their size are equal: rounding hides the order. */
@@ -331,8 +331,8 @@ double convergence_noise(const struct case_values *study, const struct case_valu
     return rtol + search_error / (way > 0 ? fmin(1, is_tail ? strouhal * way : way) : 1);
 }
 
-/* The noise of a quantity of a member of an error study; that of a ratio or a difference has both parts. is_neighbour:
- * without the error of the integrator, which neighbours share. */
+/* The noise of a quantity of a member of an error study; a ratio or a difference has that of both its parts.
+ * is_neighbour: leave out the error of the integrator, which neighbours share. */
 static double study_noise(const struct error_study *study, const struct member_file *members, int m, int q, int f,
                           bool is_neighbour) {
     if (study->relation != ERROR_VALUE) {
@@ -460,8 +460,8 @@ void convergence_orders_create(struct arena *arena, struct convergence_orders *o
 
 // ---- the judgement of an error study
 
-/* CPU time of a member for a simulated time common to all members, s, plus a constant, below which the cost is
- * irrelevant. */
+/* CPU time that a member would take for a simulated time that is common to all members [s], plus a constant, because
+ * below it the cost is irrelevant. */
 static double cost_of(const struct error_study *study, const struct member_file *members, int m) {
     const bool is_by_beats = study->is_steady && !study->is_static;
     const double least_beat = 1e-3, least_run = 0.1;
@@ -469,7 +469,8 @@ static double cost_of(const struct error_study *study, const struct member_file 
            (is_by_beats ? least_beat : least_run);
 }
 
-// at most four levels, and three of a duration, because a wake truncated within two body lengths is not yet a far wake
+// judge at most four levels, but three of a duration, because a wake that ends within two body lengths is not yet a far
+// wake
 struct convergence_levels convergence_study_levels(const struct error_study *study, const struct error_study_key *key,
                                                    double *size) {
     for (int i = 0; i < key->n_levels; i++) size[i] = error_plan_size(key->row, key->value[i]);
@@ -746,8 +747,8 @@ struct error_study_next convergence_study_next(struct error_study *study, const 
     if (isnan(next.value)) return next;
     next.cost = fmax(1, next.cost);  // short runs have noisy times
 
-    // predicted errors: of the worst quantity by the refined key, and the largest of all keys; shift and spread of the
-    // refined key fall together
+    // predict the error of the worst quantity by the refined key, and the largest error of all keys; shift and spread
+    // of the refined key fall together
     next.part = relative(study, next.place, next_error(study, members, key, next.value, next.place));
     next.sum = isnan(next.part) ? NAN : 0;
     for (int place = 0; place < study->n_asked * study->n_fish; place++) {

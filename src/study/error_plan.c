@@ -153,8 +153,8 @@ static bool asks_for_modes(const struct error_study *study) {
     return false;
 }
 
-/* The steps of an input, as parts of it, on both sides, or on the one side that its range allows; the largest tolerance
- * of the search at them: it moves a derivative by 4e-4 at most. */
+/* The steps of an input, as parts of it, on both sides or on the one side that its range allows; and the largest
+ * tolerance of the search at these steps, which moves a derivative by 4e-4 at most. */
 static const double input_steps[] = {0.04, 0.08, 0.16};
 static const double input_tolerance = 1e-5;
 
@@ -203,8 +203,8 @@ static struct row make_row(const struct error_study *study, int n, const struct 
 
         if (companion && !is_choice) row_set(&row, companion, 0, part * plan_number_of(values, companion, 0));
 
-        // a small change of a quantity needs a small error of the search, and only the last beat; the fish beats with
-        // the same number of events
+        // a small change of a quantity needs a small error of the search, and only the last beat counts; the fish beats
+        // with the same number of events
         const bool is_beat = moves_beat(key->row);
         if (is_model_input) {
             const double most = values->steady.formation == YES ? INFINITY : input_tolerance;
@@ -374,8 +374,8 @@ static enum status choose_levels(struct error_study *study) {
             error_plan_insert(key, given->value[i]);
         }
 
-        // the far wake converges with the design order only after two halvings of the spacing; the other keys have four
-        // levels all the same: three would be judged by twice the largest difference
+        // the far wake converges with the design order only after two halvings of the spacing. All keys have four
+        // levels all the same, because three would be judged by twice the largest difference
         const double base = key->value[0];
         if (row->kind == SWEEP_INPUT) {
             // two steps on both sides, else three on one
@@ -392,7 +392,7 @@ static enum status choose_levels(struct error_study *study) {
         for (int i = 0; i < row->n_levels && !given; i++) {
             if (is_valid_level(study, k, row->level[i])) error_plan_insert(key, row->level[i]);
         }
-        // half the nodes do not resolve the wave of most bodies: with finer levels one coarser level suffices
+        // half the nodes do not resolve the wave of most bodies, so with finer levels one coarser level suffices
         const bool are_nodes = strcmp(row->path, "fish.nodes") == 0;
         int n_missing = 0, n_finer = row->kind == SWEEP_MODEL || error->confirm;
         for (int i = 0; i < 2 && !given; i++) {
@@ -436,7 +436,7 @@ static bool is_used(const struct error_study *study, const struct sweep_error_ke
     const struct case_values *const values = study->values;
     const bool is_wake = strncmp(row->path, "wake.", 5) == 0, has_fluid = values->school.fluid.density > 0;
 
-    // the key of a choice may need another choice; a factor of 1 is off, and only a moving body has damping
+    // the key of a choice may need another choice: a factor of 1 means off, and only a moving body has damping
     if (row->switch_path && (int)plan_number_of(values, row->switch_path, 0) != row->switch_value) return false;
     if (strcmp(row->path, "fish.drag.waving") == 0 && !(value > 1)) return false;
     if (strcmp(row->path, "fish.body.tail_thickness") == 0) return value > 0;
@@ -493,7 +493,7 @@ static double input_value(const struct error_study *study, const struct school *
     return strcmp(path, "fish.drag.waving") == 0 ? school->fish->waving : value;
 }
 
-/* Add the inputs that the case asks for; all that it uses if it names none. */
+/* Add the inputs that the case asks for, or all that it uses if it names none. */
 static enum status choose_inputs(struct error_study *study, const struct school *school) {
     const struct sweep_error *const error = study->study->error;
     const struct sweep_axis *const axis = &study->study->sweep[0];

@@ -1,7 +1,6 @@
-/* member_file.h: final values of a member, read from its result file. Tested by tests/study/test_member_file.c.
- *
- * A quantity is the last row of a variable of a result, a number computed from the last rows, or a value of a steady
- * state. */
+/* member_file.h: reads the final values of a member of a study from its result file. A quantity is the last row of a
+ * variable of a result, a number computed from the last rows, or a value of a steady state. Tested by
+ * tests/study/test_member_file.c. */
 #ifndef MEMBER_FILE_H
 #define MEMBER_FILE_H
 

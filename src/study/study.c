@@ -149,7 +149,8 @@ static enum status member_start(struct study *study, struct job *job) {
         // a study that is stopping has no signal handlers any more
         if (is_stopped(study) || getppid() != parent) _exit(status_exit_code(STATUS_STOPPED));
 
-        // keep the SIGINT handler after the first signal: a second SIGINT to the process group is meant for the study
+        // keep the handler after the first SIGINT: a second one, which the whole process group gets, is meant for the
+        // study
         struct sigaction action;
         sigaction(SIGINT, NULL, &action);
         action.sa_flags &= ~(int)SA_RESETHAND;
@@ -211,7 +212,7 @@ static enum status run_until_all_end(struct study *study) {
     enum status status = STATUS_OK;
 
     for (;;) {
-        // ask processes to stop, once: all at the end of the study, and those beyond the time limit
+        // ask processes to stop, but only once: all of them at the end of the study, and those beyond the time limit
         const bool is_end = !study->is_stopping && (is_stopped(study) || study->required || status != STATUS_OK);
         for (int j = 0; j < study->n_jobs; j++) {
             struct job *const job = &study->job[j];

@@ -642,7 +642,8 @@ static enum status test_completeness(const struct case_values *study, const stru
                        folder, study->error ? "error" : "study");
 }
 
-/* Let the streams of a report take the memory for all that was printed. main reports a full standard output. */
+/* Flush the streams of a report, so that they take the memory for all that was printed. main reports a full standard
+ * output. */
 static enum status end_texts(FILE *stream, FILE *warnings) {
     if ((fflush(stream) == 0 && fflush(warnings) == 0) || errno != ENOMEM) return STATUS_OK;
     return status_fail(STATUS_MEMORY, "out of memory: text to print");
@@ -655,7 +656,7 @@ enum status study_report(const struct case_values *study, const char *folder, co
     TRY(study_folder_read_members(arena, &members, study, folder));
     compare_fill(study, members);
 
-    // all that needs memory precedes study.nc, which is there also after a missed expectation
+    // request all memory before study.nc is written, because it has to be there also after an expectation was missed
     struct convergence_orders orders;
     const char *const table = path ? path : study_folder_path(arena, folder, "study.nc");
     const char *const csv = study_folder_path(arena, folder, "error.csv");
@@ -750,7 +751,7 @@ static enum status refine_and_report(struct arena *arena, struct error_sweep *sw
         arena_free(round);
     }
 
-    // all that needs memory precedes the files, which are there also after a missed bound
+    // request all memory before the files are written, because they have to be there also after a bound was missed
     const struct convergence_orders none = {0};
     const char *const table = study_folder_path(arena, folder, "study.nc");
     const char *const csv = study_folder_path(arena, folder, "error.csv");

@@ -211,7 +211,7 @@ static enum status plan_member(struct arena *arena, struct study_plan *plan, con
     return STATUS_OK;
 }
 
-/* Remove the files of members of another study from number n on, or refuse them without force. Members that an error
+/* Remove the files of members of another study from number n on, or without force refuse them. Members that an error
  * study with refinement has added belong to the study. arena: scratch */
 static enum status clear_surplus(struct arena *arena, const struct case_values *study, const char *folder, int n,
                                  bool force) {

@@ -15,7 +15,7 @@
 #include "study/member_file.h"
 #include "study/study.h"
 
-/* Create the folder unless the folder exists. Fails with STATUS_FILE. */
+/* Create the folder unless it exists. Fails with STATUS_FILE. */
 enum status study_folder_create(const char *folder);
 
 /* Remove the folder and all files in the folder. */

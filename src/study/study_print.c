@@ -151,7 +151,8 @@ static void add_key_columns(struct table *table, const struct case_values *study
     }
 }
 
-/* Whether the study sweeps keys of other fish than the first one: what does the first fish change at them? */
+/* Whether the study sweeps keys of other fish than the first one, so that one asks what the first fish changes at them.
+ * */
 static bool is_of_followers(const struct case_values *study) {
     for (int a = 0; a < study->n_axes; a++) {
         for (int k = 0; k < study->sweep[a].n_keys; k++) {
@@ -237,8 +238,8 @@ void study_print(struct arena *arena, const struct case_values *study, const str
         if (quantity[s] >= 0) table_column(table, shown[s].head, strcmp(row->unit, "1") == 0 ? "" : row->unit);
     }
 
-    // of followers the power of the muscle or of the held body over that of the first fish, and beside the ratio the
-    // change, because a ratio looks tame where the power of a single fish is too large
+    // print the power of followers, that of the muscle or of the held body, over that of the first fish; and beside
+    // this ratio the change, because a ratio looks mild where the power of a single fish is too large
     const bool has_ratio = is_of_followers(study);
     const int power = member_file_quantity_number("mean_power");
     if (has_ratio) {

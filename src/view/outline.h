@@ -29,7 +29,7 @@ struct outline outline_create(struct arena *arena, int n_nodes, const double *th
 /* The coordinate along the curve of point i of the polygon, counted from the nose along the left side. */
 int outline_point(int i);
 
-/* The polygon [m] (OUTLINE_SIDES, 2) at the positions of the nodes [m] (n_nodes, 2). */
+/* The polygon [m] (OUTLINE_SIDES, 2) of a body whose nodes are at these positions [m] (n_nodes, 2). */
 void outline_polygon(const struct outline *outline, const double *nodes, double *polygon);
 
 #endif

@@ -115,7 +115,7 @@ static enum status page_choose(struct page *page) {
 
 // ---- the fish
 
-/* Write the shapes, each once, and the fish with the numbers of the shapes. */
+/* Write each shape once, and the fish with the numbers of their shapes. */
 static enum status write_fish(const struct page *page) {
     const struct result_reader *const reader = page->reader;
     double *thickness, *length;

@@ -227,7 +227,8 @@ static enum status vtk_write_wakes(const struct export *export, struct arena *ar
 
 // ---- walls
 
-/* One file for all rows: walls do not move. The lines end two body lengths beyond the nodes of all rows. */
+/* Write one file for all rows, because walls do not move. Its lines end two body lengths beyond the nodes of all rows.
+ * */
 static enum status vtk_write_walls(const struct export *export, struct arena *arena, size_t row, FILE *stream) {
     (void)row;
     const struct result_reader *const reader = export->reader;
