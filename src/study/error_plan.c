@@ -374,7 +374,7 @@ static enum status choose_levels(struct error_study *study) {
             error_plan_insert(key, given->value[i]);
         }
 
-        // the far wake converges with the design order only after two halvings of the spacing. All keys have four
+        // the far wake converges with the design order only after two halvings of the spacing. The other keys have four
         // levels all the same, because three would be judged by twice the largest difference
         const double base = key->value[0];
         if (row->kind == SWEEP_INPUT) {
