@@ -5,7 +5,6 @@
 #include <sys/resource.h>
 
 #include "base/parallel.h"
-#include "run/event.h"
 #include "wake/stretch.h"
 
 /* The shape of a synthetic wake: it leaves the tail by `drift` body lengths per beat and swings to both sides by
@@ -44,10 +43,9 @@ static double bytes_so_far(void) {
 static enum status event_cost(struct simulation *simulation, double evaluations, double *seconds) {
     struct state *const state = simulation->state;
     struct residual *const residual = simulation->residual;
-    bool jumped;
 
     double start = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
-    TRY(event_next(state, residual, simulation->consistent, &jumped));
+    TRY(simulate_event(simulation));
     *seconds = clock_seconds(CLOCK_THREAD_CPUTIME_ID) - start;
 
     // the first evaluation after an event also selects the sources of the wakes, the others only move them

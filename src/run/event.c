@@ -1,23 +1,24 @@
-/* event.c: what happens to the water and to the fish between two intervals, step by step. event_next is the event of a
- * run; event_start and event_change are its variants at the start and after a change from outside. */
+/* event.c: what happens to the water and to the fish between two intervals, step by step. Nothing is recorded here:
+ * observers.c does that before, between and after the functions of this file. */
 #include "run/event.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stddef.h>
+#include <string.h>
 
-#include "contact/clearance.h"
 #include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
 #include "flow/flow_at_wake.h"
 #include "force/drag.h"
-#include "run/simulate.h"
 #include "school/diagnostics.h"
-#include "school/diagnostics_energy.h"
-#include "school/diagnostics_momentum.h"
-#include "school/warnings.h"
-#include "state/impulse.h"
-#include "state/state.h"
+
+struct event *event_create(struct arena *arena, const struct school *school) {
+    struct event *event;
+    NEW(arena, event, 1);
+    NEW(arena, event->has_kink, school->n_fish);
+    NEW(arena, event->lost, school->n_fish);
+    return event;
+}
 
 // evaluate the equations; STATUS_RETRY becomes final, because an event has no step size to reduce
 static enum status event_evaluate(struct residual *residual, const struct state *state) {
@@ -62,11 +63,11 @@ static enum status event_release_impulse(struct state *state, struct residual *r
     return STATUS_OK;
 }
 
-enum { ALL = -1 };
+// Evaluate the velocities of the free vortices at the present state: of all, or of the newest of each fish only, which
+// has no velocity from before.
+enum which_vortices { ALL_VORTICES, NEWEST_VORTICES };
 
-// Evaluate the velocities of all free vortices at the present state. n_new: so many vortices of each fish have no
-// velocity from before, or ALL.
-static void event_wake_velocities(struct state *state, struct residual *residual, int n_new) {
+static void event_wake_velocities(struct state *state, struct residual *residual, enum which_vortices which) {
     const struct school *school = residual->school;
     struct flow *const flow = residual->flow;
     flow_at_wake(flow, state);
@@ -92,7 +93,7 @@ static void event_wake_velocities(struct state *state, struct residual *residual
         }
 
         if (wake->n_vortex > 0) {
-            const int n = n_new == ALL ? wake->n_vortex : n_new;
+            const int n = which == ALL_VORTICES ? wake->n_vortex : 1;
             const double *const rate = flow->kernel->has_legs ? flow->wake_rate + first : NULL;
             wake_set_velocity(wake, flow->wake_u + first, flow->wake_v + first, rate, n);
         }
@@ -108,8 +109,8 @@ static enum status event_flow(struct state *state, struct residual *residual) {
     return STATUS_OK;
 }
 
-// update the control of every fish; returns whether a bias jumps
-static bool event_control(struct state *state, struct residual *residual) {
+// the fish look at the samples of their last period, and the control law acts; returns whether a bias jumps
+static bool event_act(struct state *state, struct residual *residual, struct event *event) {
     const struct school *school = residual->school;
     const int threads = fish_threads(school);
     bool jumps = false;
@@ -138,62 +139,27 @@ static bool event_control(struct state *state, struct residual *residual) {
         }
         const double change =
             fabs(control_rate(fish, memory, state->t, 0, state->y) - before) + fabs(memory->drive_rate - drive_before);
-        if (fabs(change) > 0) diagnostics_begin(residual, state, f);
+        event->has_kink[f] = fabs(change) > 0;
     }
 
     return jumps;
 }
 
-// What is recorded at an event, and changes neither the water nor the fish. Before: the rates of algebraic unknowns at
-// the end of the interval, and the impulse that the wakes lose by decay in it.
-static void event_observe_before(struct residual *residual, struct state *state) {
+// Evaluate the flow at the event if unknowns jump, or if shedding or control take values from it. The samples of the
+// history do not need it: the last evaluation of the step is exact to the tolerance of Newton's iteration.
+static enum status event_flow_if_used(struct state *state, struct residual *residual, bool jumps) {
     const struct school *const school = residual->school;
-    const int threads = fish_threads(school);
-    state_find_rates(state, school, residual_shed_is_algebraic(residual));
-
-#pragma omp parallel for num_threads(threads) schedule(static)
-    for (int f = 0; f < school->n_fish; f++) impulse_fade(school, state, f);
+    bool is_used = jumps || school->shedding != SHEDDING_SHEET;
+    for (int f = 0; f < school->n_fish; f++) is_used |= control_uses_moment(&school->fish[f]);
+    return is_used ? event_flow(state, residual) : STATUS_OK;
 }
 
-// After the water has its new velocities: the momentum balance, the samples of the histories, which the control reads,
-// self-crossings and divergence.
-static void event_observe_after(struct residual *residual, struct state *state) {
-    const struct school *const school = residual->school;
-    diagnostics_momentum_event(residual, state);
-    diagnostics_remember(residual, state);
-    self_crossing_remember(school, state, residual->scratch);
-    warnings_divergence(school, state, state->divergence, &state->diverged);
-}
-
-// The rest of an event, after the velocities of the free vortices are known. jumps: the unknowns have jumped. *jumped:
-// they have, or a control law has made them jump.
-static enum status event_finish(struct state *state, struct residual *residual, struct initial_conditions *initial,
-                                bool jumps, bool *jumped) {
-    // Evaluate the flow at the event if unknowns jump, or if shedding or control take values from it. The samples of
-    // the history do not need it: the last evaluation of the step is exact to the tolerance of Newton's iteration.
-    const struct school *const school = residual->school;
-    bool uses_flow = jumps || school->shedding != SHEDDING_SHEET;
-    for (int f = 0; f < school->n_fish; f++) uses_flow |= control_uses_moment(&school->fish[f]);
-    if (uses_flow) TRY(event_flow(state, residual));
-
-    event_observe_after(residual, state);
-
-    const bool steered = event_control(state, residual);
-    if (steered) {
-        if (!jumps) diagnostics_before_jump(residual, state);
-        TRY(initial_conditions_solve(initial, &residual_run, state->t, state->y, state->yp));
-    }
-
-    residual_couple(&residual->couplings, state->y);
-    *jumped = jumps || steered;
-    if (*jumped) diagnostics_after_jump(residual, state);
-    return STATUS_OK;
-}
-
-enum status event_start(struct state *state, struct residual *residual, struct initial_conditions *initial) {
+enum status event_start(struct state *state, struct residual *residual, struct initial_conditions *initial,
+                        struct event *event) {
     const struct school *const school = residual->school;
     const bool is_sheet = school->shedding == SHEDDING_SHEET, has_vortices = school->n_vortices > 0;
     struct residual_mode mode = {.velocities_are_given = true};
+    memset(event->lost, 0, (size_t)school->n_fish * sizeof *event->lost);
 
     // release the first markers while no circulation has been shed
     if (is_sheet) {
@@ -210,60 +176,66 @@ enum status event_start(struct state *state, struct residual *residual, struct i
 
     // solve with all vortices, and if the first markers had a given circulation, once more with the law of shedding
     if (has_vortices || !is_sheet) TRY(initial_conditions_solve(initial, &mode, state->t, state->y, state->yp));
-    if (has_vortices || is_sheet) event_wake_velocities(state, residual, ALL);
+    if (has_vortices || is_sheet) event_wake_velocities(state, residual, ALL_VORTICES);
     mode.shed = SHED_BY_LAW;
     if (is_sheet) TRY(initial_conditions_solve(initial, &mode, state->t, state->y, state->yp));
 
     if (school->shedding == SHEDDING_IMPULSIVE) {
         TRY(event_release_impulse(state, residual, initial));
         TRY(initial_conditions_solve(initial, &residual_run, state->t, state->y, state->yp));
-        event_wake_velocities(state, residual, ALL);
+        event_wake_velocities(state, residual, ALL_VORTICES);
     }
 
-    bool jumped;
-    TRY(event_finish(state, residual, initial, true, &jumped));
-    diagnostics_start(residual, state);
-    return STATUS_OK;
+    event->jumps = true;
+    return event_flow_if_used(state, residual, event->jumps);
 }
 
-enum status event_next(struct state *state, struct residual *residual, struct initial_conditions *initial,
-                       bool *jumped) {
+enum status event_water(struct state *state, struct residual *residual, struct initial_conditions *initial,
+                        struct event *event) {
     const struct school *school = residual->school;
     const int threads = fish_threads(school);
-    event_observe_before(residual, state);
 
+    // wakes and control arrive at the time of the event
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < school->n_fish; f++) {
         wake_advance(&state->wake[f], school->interval);
         control_advance(&state->control[f], school->interval);
     }
-
     state->event++;
     state->t = fish_event_time(school, state->event);
 
-    const bool jumps = school->shedding == SHEDDING_IMPULSIVE;
-    if (jumps) diagnostics_before_jump(residual, state);
-    if (jumps) {
+    // tails shed; impulsive shedding makes the unknowns jump
+    event->jumps = school->shedding == SHEDDING_IMPULSIVE;
+    if (event->jumps) {
         TRY(event_release_impulse(state, residual, initial));
     } else {
         event_release(state, school);
     }
 
+    // old vortices and markers go
 #pragma omp parallel for num_threads(threads) schedule(static)
-    for (int f = 0; f < school->n_fish; f++) {
-        impulse_thin_wake(school, state, f);
-    }
+    for (int f = 0; f < school->n_fish; f++) event->lost[f] = impulse_thin_wake(school, state, f);
 
-    if (jumps) TRY(initial_conditions_solve(initial, &residual_run, state->t, state->y, state->yp));
-    event_wake_velocities(state, residual, 1);
-    return event_finish(state, residual, initial, jumps, jumped);
+    // the water has new velocities
+    if (event->jumps) TRY(initial_conditions_solve(initial, &residual_run, state->t, state->y, state->yp));
+    event_wake_velocities(state, residual, NEWEST_VORTICES);
+    return event_flow_if_used(state, residual, event->jumps);
+}
+
+enum status event_control(struct state *state, struct residual *residual, struct initial_conditions *initial,
+                          struct event *event) {
+    const bool steered = event_act(state, residual, event);
+    if (steered) TRY(initial_conditions_solve(initial, &residual_run, state->t, state->y, state->yp));
+    residual_couple(&residual->couplings, state->y);
+    event->jumps |= steered;
+    return STATUS_OK;
 }
 
 enum status event_change(struct state *state, struct residual *residual, struct initial_conditions *initial,
                          bool velocities_are_given) {
     const struct residual_mode mode = {.velocities_are_given = velocities_are_given};
     TRY(initial_conditions_solve(initial, &mode, state->t, state->y, state->yp));
-    event_wake_velocities(state, residual, ALL);
+    event_wake_velocities(state, residual, ALL_VORTICES);
     TRY(event_flow(state, residual));
     residual_couple(&residual->couplings, state->y);
     return STATUS_OK;

@@ -13,6 +13,7 @@
 #include "flow/flow_at_bodies.h"
 #include "result/result_table.h"
 #include "run/event.h"
+#include "run/observers.h"
 #include "school/diagnostics_energy.h"
 #include "solver/integrator.h"
 
@@ -54,6 +55,12 @@ static struct simulation *simulation_begin(struct arena *parent, const struct ca
     return created;
 }
 
+static void simulation_create_results(struct simulation *simulation) {
+    simulation->diagnostics = diagnostics_create(simulation->arena, simulation->school);
+    simulation->event = event_create(simulation->arena, simulation->school);
+    simulation->observers = observers_create(simulation->arena, simulation->school);
+}
+
 /* Create the equations and their initial conditions; give up in between once *stop is not 0. */
 static enum status simulation_create_equations(struct simulation *simulation, const volatile sig_atomic_t *stop) {
     arena_free(simulation->renewed);
@@ -77,9 +84,9 @@ enum status simulate_start(struct arena *parent, struct simulation **started, co
     simulation->state = state_create(simulation->arena, simulation->school);
     TRY(status_ask(stop));
     TRY(simulation_create_equations(simulation, stop));
-    simulation->diagnostics = diagnostics_create(simulation->arena, simulation->school);
+    simulation_create_results(simulation);
     simulation->residual->stop = stop;
-    TRY(event_start(simulation->state, simulation->residual, simulation->consistent));
+    TRY(simulate_first_event(simulation));
     TRY(status_ask(stop));
     return simulation->integrator->create(simulation->renewed, &simulation->solver, simulation->residual,
                                           simulation->state, &simulation->options);
@@ -105,7 +112,7 @@ enum status simulate_take_up(struct arena *parent, struct simulation **simulatio
     arena_move(state->arena, created->arena);
     created->totals = *totals;
     simulation_set_order(created, values);
-    created->diagnostics = diagnostics_create(created->arena, school);
+    simulation_create_results(created);
     return simulate_renew(created);
 }
 
@@ -176,6 +183,27 @@ enum status simulate_interval(struct simulation *simulation, double t) {
                               &watch);
 }
 
+enum status simulate_first_event(struct simulation *simulation) {
+    struct residual *const residual = simulation->residual;
+    struct state *const state = simulation->state;
+    TRY(event_start(state, residual, simulation->consistent, simulation->event));
+    observers_after(residual, state, simulation->event);
+    TRY(event_control(state, residual, simulation->consistent, simulation->event));
+    diagnostics_start(residual, state);
+    return STATUS_OK;
+}
+
+enum status simulate_event(struct simulation *simulation) {
+    struct residual *const residual = simulation->residual;
+    struct state *const state = simulation->state;
+    observers_before(simulation->observers, residual, state);
+    TRY(event_water(state, residual, simulation->consistent, simulation->event));
+    observers_after(residual, state, simulation->event);
+    TRY(event_control(state, residual, simulation->consistent, simulation->event));
+    observers_jump(simulation->observers, residual, state, simulation->event);
+    return STATUS_OK;
+}
+
 enum status simulate_step(struct simulation *simulation) {
     const struct school *const school = simulation->school;
     const struct integrator *const integrator = simulation->integrator;
@@ -197,10 +225,10 @@ enum status simulate_step(struct simulation *simulation) {
 
     // perform the event, and count before a restart, which discards the last step
     if (status == STATUS_OK) {
-        bool jumped = false;
-        status = event_next(state, simulation->residual, simulation->consistent, &jumped);
+        status = simulate_event(simulation);
         if (status == STATUS_OK) simulate_count(simulation, &simulation->totals);
-        if (status == STATUS_OK && jumped && integrator->restart) status = integrator->restart(simulation->solver);
+        if (status == STATUS_OK && simulation->event->jumps && integrator->restart)
+            status = integrator->restart(simulation->solver);
     }
 
     return status == STATUS_SOLVER ? simulation_explain(simulation, status) : status;

@@ -13,6 +13,8 @@
 #include "solver/integrator.h"
 #include "state/state.h"
 
+struct event;      /* run/event.h */
+struct observers;  /* run/observers.h */
 struct result_row; /* result/result_table.h */
 
 /* A simulation. Callers may read the fields; only the functions below change them. */
@@ -24,6 +26,8 @@ struct simulation {
     struct residual *residual;
     struct initial_conditions *consistent;
     struct diagnostics *diagnostics;
+    struct event *event; /* what the last event did */
+    struct observers *observers;
     const struct integrator *integrator;
     void *solver;
     struct integrator_options options;
@@ -66,6 +70,12 @@ int simulate_order(struct arena *arena, const struct case_values *values, const 
 
 /* Integrate to time t [s], the next event, but do not perform it. Fails with STATUS_SOLVER or STATUS_STOPPED. */
 enum status simulate_interval(struct simulation *simulation, double t);
+
+/* Perform the first event, at t = 0, or the next one, for which the unknowns must be those at its time; observe the
+ * state before and after. After the next one the integrator has to restart if simulation->event->jumps. Fails with
+ * STATUS_SOLVER. */
+enum status simulate_first_event(struct simulation *simulation);
+enum status simulate_event(struct simulation *simulation);
 
 /* Integrate to the next event and perform it. Fails with STATUS_SOLVER, STATUS_STOPPED, or STATUS_CONTACT (bodies in
  * contact with contact.action: stop); the state is then between two events. */

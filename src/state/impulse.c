@@ -157,7 +157,7 @@ void impulse_fade(const struct school *school, struct state *state, int f) {
     book_loss(school, state, f, &lost, (const double[]){(start[0] + end[0]) / 2, (start[1] + end[1]) / 2});
 }
 
-void impulse_thin_wake(const struct school *school, struct state *state, int f) {
+struct impulse_moments impulse_thin_wake(const struct school *school, struct state *state, int f) {
     struct wake *const wake = &state->wake[f];
     const struct fish *const fish = &school->fish[f];
     const double t = state->t;
@@ -167,11 +167,14 @@ void impulse_thin_wake(const struct school *school, struct state *state, int f) 
     stretch_find_old(wake, fish, school);
     stretch_drop(wake, fish, school);
     const struct impulse_moments after = impulse_of_wake(wake, school, t, 0);
-    const struct impulse_moments lost = {.circulation = before.circulation - after.circulation,
-                                         .x = before.x - after.x,
-                                         .y = before.y - after.y,
-                                         .square = before.square - after.square};
+    return (struct impulse_moments){.circulation = before.circulation - after.circulation,
+                                    .x = before.x - after.x,
+                                    .y = before.y - after.y,
+                                    .square = before.square - after.square};
+}
 
-    const double tail[2] = {state->y[fish->at.x + fish->n_nodes - 1], state->y[fish->at.y + fish->n_nodes - 1]};
-    book_loss(school, state, f, &lost, tail);
+void impulse_book_thinned(const struct school *school, struct state *state, int f, const struct impulse_moments *lost) {
+    double tail[2];
+    fish_tail(&school->fish[f], state->y, tail);
+    book_loss(school, state, f, lost, tail);
 }

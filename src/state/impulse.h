@@ -32,12 +32,17 @@ double impulse_depth(const struct fish *fish);
 /* Lost circulation of a wake, tau after the event at time t: removed vortices, and decayed circulation. */
 double impulse_lost_circulation(const struct wake *wake, const struct school *school, double t, double tau);
 
-/* impulse_fade: book the moments that decay in the wake of fish f between the event of the state and the next event;
- * call before the wake moves. impulse_thin_wake: remove old vortices, and drop markers, at the event of the state after
- * the release, and book what changes. With wake.removed_circulation: dropped, the lost circulation returns to the body,
- * and is booked at the tail. */
+/* Book the moments that decay in the wake of fish f between the event of the state and the next event; call it before
+ * the wake moves. With wake.removed_circulation: dropped, the lost circulation returns to the body, and is booked at
+ * the tail; likewise below. */
 void impulse_fade(const struct school *school, struct state *state, int f);
-void impulse_thin_wake(const struct school *school, struct state *state, int f);
+
+/* Remove old vortices, and drop markers, at the event of the state after the release. Returns what the wake lost;
+ * product is 0. */
+struct impulse_moments impulse_thin_wake(const struct school *school, struct state *state, int f);
+
+/* Book what impulse_thin_wake returned. */
+void impulse_book_thinned(const struct school *school, struct state *state, int f, const struct impulse_moments *lost);
 
 /* Book the loss of a wake that has changed at an event: before minus after. */
 void impulse_book(struct momentum_balance *momentum, const struct impulse_moments *before,

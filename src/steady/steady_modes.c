@@ -9,7 +9,6 @@
 #include "fish/fish_motion.h"
 #include "flow/flow.h"
 #include "flow/flow_external.h"
-#include "run/event.h"
 #include "run/simulate.h"
 #include "solver/modes.h"
 #include "solver/newton.h"
@@ -62,10 +61,9 @@ enum status steady_modes_find(struct simulation *simulation, struct steady_value
     // the held bodies grow a wake
     struct arena *const arena = arena_create(simulation->arena, "the modes of the bodies");
     struct state *kept = NULL;
-    bool jumped;
     int n_most = STEADY_QUANTITIES * school->n_fish;
     steady_map_save(arena, simulation, &kept);
-    TRY(event_start(state, simulation->residual, simulation->consistent));
+    TRY(simulate_first_event(simulation));
     hold_bodies(simulation, kept, state->t);
     for (int i = 0; i < n_events; i++) {
         if (simulation->stop && *simulation->stop) {
@@ -73,7 +71,7 @@ enum status steady_modes_find(struct simulation *simulation, struct steady_value
                                simulate_stopped_by(simulation->stop));
         }
         hold_bodies(simulation, kept, fish_event_time(school, state->event + 1));
-        TRY(event_next(state, simulation->residual, simulation->consistent, &jumped));
+        TRY(simulate_event(simulation));
     }
 
     // the modes of the bodies with this wake

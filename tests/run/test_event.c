@@ -61,8 +61,7 @@ TEST(an_event_without_finite_velocities_is_final) {
         // continuous shedding releases at the nascent vortex, impulsive shedding at the tail
         s->wake[0].slip[0] = NAN;
         if (i == 1) s->y[simulation->school->fish[0].at.x + 6] = NAN;
-        bool jumped;
-        assert_int_equal(event_next(s, simulation->residual, simulation->consistent, &jumped), STATUS_SOLVER);
+        assert_int_equal(simulate_event(simulation), STATUS_SOLVER);
         assert_non_null(strstr(status_message(), "has no finite value at t = 0.12"));
     }
 }
@@ -103,9 +102,8 @@ static void fields_are_continuous(const char *wake) {
     school_ok(residual_evaluate(residual, &residual_run, next, simulation->state->y, simulation->state->yp, before));
     memcpy(u, residual->flow->u, (size_t)n_points * sizeof *u);
     memcpy(v, residual->flow->v, (size_t)n_points * sizeof *v);
-    bool jumped = true;
-    school_ok(event_next(simulation->state, residual, simulation->consistent, &jumped));
-    assert_int_equal(jumped, 0);
+    school_ok(simulate_event(simulation));
+    assert_false(simulation->event->jumps);
     double after[400];
     school_ok(residual_evaluate(residual, &residual_run, next, simulation->state->y, simulation->state->yp, after));
     // only rounding errors, from sums over sources in another order
@@ -176,9 +174,8 @@ TEST(impulses_conserve_circulation_and_meet_kutta) {
         school_ok(simulate_interval(simulation, 0.02 * n));
         // no shedding between events
         NEAR(s->y[fish->at.circulation], shed, 1e-12, 0);
-        bool jumped = false;
-        school_ok(event_next(simulation->state, simulation->residual, simulation->consistent, &jumped));
-        assert_int_equal(jumped, 1);
+        school_ok(simulate_event(simulation));
+        assert_true(simulation->event->jumps);
         assert_int_equal(s->wake[0].n_vortex, n + 1);
         NEAR(s->wake[0].circulation[n], s->y[fish->at.circulation] - shed, 1e-15, 0);
         NEAR(bound_sheet_circulation(fish, s->y) + s->y[fish->at.circulation], 0, 1e-12, 0);
@@ -201,8 +198,7 @@ TEST(impulses_by_rate_are_the_rate_times_the_interval) {
         double value[100];
         school_ok(residual_evaluate(simulation->residual, &residual_run, 0.02 * n, s->y, s->yp, value));
         const double rate = residual_kutta_rate(simulation->residual, 0, s->y);
-        bool jumped = false;
-        school_ok(event_next(s, simulation->residual, simulation->consistent, &jumped));
+        school_ok(simulate_event(simulation));
         NEAR(s->y[fish->at.circulation] - shed, 0.02 * rate, 1e-12, 1e-12);
         school_ok(simulation->integrator->restart(simulation->solver));
     }

@@ -63,7 +63,8 @@ static double wither(const char *text) {
         impulse_fade(setup.school, setup.state, 0);
         wake_advance(wake, interval);
         setup.state->t += interval;
-        impulse_thin_wake(setup.school, setup.state, 0);
+        const struct impulse_moments lost = impulse_thin_wake(setup.school, setup.state, 0);
+        impulse_book_thinned(setup.school, setup.state, 0, &lost);
         all_of(&setup, now);
         if (setup.school->removed == REMOVED_RETAINED) NEAR_ARRAY(3, now, before, 1e-14, 1e-13);
     }

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "run/event.h"
 #include "run/simulate.h"
 #include "verify.h"
 
@@ -400,9 +399,8 @@ static enum status runge_kutta_run(struct simulation *simulation, double end, in
         for (int i = 0; i < steps_per_event && status == STATUS_OK; i++) {
             status = runge_kutta_step(simulation, scratch + 3 * n, t + i * h, h, scratch);
         }
-        bool jumped = false;
         if (status == STATUS_OK) {
-            status = event_next(simulation->state, simulation->residual, simulation->consistent, &jumped);
+            status = simulate_event(simulation);
         }
     }
     free(scratch);
