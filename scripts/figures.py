@@ -312,10 +312,10 @@ def page():
     """The text of doc/gallery.md."""
     lines = [
         "# Figures", "",
-        "Every kind of figure with the commands that draw it, run in this order in the top folder after `make`. `shoal.plot` has",
-        "the same figures as functions ([python.md](python.md)). A name that ends in .pdf or .svg gives a figure for print.",
-        "`plot.py KIND --help` lists the options of a kind. `make figures` draws the figures of the documents and writes this",
-        "page.", "",
+        "This page shows every kind of figure together with the commands that draw it. Run them in this order in the top folder,",
+        "after `make`. If the name of a picture ends in .pdf or .svg, the figure is made for print. `plot.py KIND --help` lists the",
+        "options of a kind, and in Python `shoal.plot` has the same figures as functions ([python.md](python.md)). `make figures`",
+        "draws the figures of all documents and writes this page.", "",
     ]
     shown = set()
     for heading, words, figures in CHAPTERS:
@@ -330,10 +330,11 @@ def page():
             lines += ["```sh", *new, "```", "", f"![{name}](figures/gallery/{name}.png)", ""]
     lines += [
         "## Movies and pages", "",
-        "`scripts/animate.py RUN.nc MOVIE.mp4` makes a movie in real time with 25 pictures a second, interpolated between coarse",
-        "rows. The camera follows a school that swims far (`--follow`, `--no-follow`); `--rate 0.5` is slow motion.", "",
-        "`build/shoal view RUN.nc` writes a page for the browser: bodies, coloured by speed, heading or power, and wakes in",
-        "motion, and traces, of many fish as median, quartiles and range.",
+        "`scripts/animate.py RUN.nc MOVIE.mp4` makes a movie in real time with 25 pictures a second, which are interpolated where",
+        "the rows of the file are further apart. The camera follows a school that swims far (`--follow`, `--no-follow`), and",
+        "`--rate 0.5` gives slow motion.", "",
+        "`build/shoal view RUN.nc` writes a page for the browser that plays the motion of bodies and wakes. Bodies are coloured by",
+        "speed, heading or power, and traces show quantities over time, for many fish as median, quartiles and range.",
     ]
     return "\n".join(lines) + "\n"
 
