@@ -6,7 +6,7 @@
     run["x"]                         # positions of all nodes, m: (fish, node, xy)
     data = shoal.open(shoal.run("case.yaml"))
 
-What the commands of the program do:
+These functions do what the commands of the program do:
 
     run(case)       simulate, write a result      resume(result)     continue a run that was stopped or killed
     steady(case)    steady state, stability       study(case)        all members of a sweep; gather(folder)
@@ -16,12 +16,13 @@ What the commands of the program do:
     view(result)    a page for a browser          animate(result)    a movie
     field(result)   the fluid on a grid           export(result, folder)  files of VTK
 
-Results as xarray: open(result); periods cuts them into beats, grid gives the axes of a sweep dimensions. In memory: Run, load.
-shoal.plot draws. SwimEnv, SwimVectorEnv, SchoolEnv: environments for learning.
+open(result) reads a result as an xarray.Dataset, periods cuts it into beats, and grid gives the axes of a sweep dimensions of
+their own. Run and load keep a run in memory, where a program can steer it. shoal.plot draws. SwimEnv, SwimVectorEnv and
+SchoolEnv are environments for learning.
 
-Needs NumPy, and the library libshoal: beside the package, in build/ of the sources, or named by the environment variable
-SHOAL_LIBRARY. All functions in the table but run call the program shoal (SHOAL_PROGRAM). open needs xarray and netCDF4, plot
-needs matplotlib; Gymnasium is optional.
+The package needs NumPy and the library libshoal, which it finds beside itself, in build/ of the sources, or by the environment
+variable SHOAL_LIBRARY. All functions in the table but run call the program shoal (SHOAL_PROGRAM). open needs xarray and netCDF4,
+plot needs matplotlib, and Gymnasium is optional.
 """
 
 import re as _re

@@ -453,17 +453,22 @@ class _Swim:
 class SwimEnv(_Swim, _from("gymnasium", "Env", object)):
     """One fish that learns, by the protocol of Gymnasium.
 
-    case, assignments: as for shoal.Run; an episode ends (is truncated) at time.end. fish: the learning fish, by number or
-    name. actions: names of bias, amplitude, frequency, or a dict with bounds {"bias": (-0.3, 0.3)}, for heave (motion.heave, m)
-    too; an action outside the box is refused. observations: names of velocity, heading, curvature, muscle, flow, goal, closing, neighbours,
-    sight, action. reward: weights of speed, cost_of_transport, course, goal, or a function of the swimmer. goal: a point (x, y),
-    m, ("leader", (1.2, 0)), a place beside a fish, or a function of the time, s, for a goal that moves. course: desired course, degree. sensors: places (n, 2) for flow,
-    from the nose, in lengths. act_every: time between actions, s, a multiple of time.shedding_interval. vary: bounds of
-    assignments that are drawn at each reset, {"fish[1].start.heading": (170, 190)}. vision: the eye of the observation
-    sight, a dict of range, lengths, angle, degree, noise, (of the distance, as a fraction; of the direction, rad), and
-    occlusion; usually {"range": 5, "angle": 300, "noise": (0, 0), "occlusion": True}. far: distance from the goal, in
-    lengths, at which an episode is over (terminated); a failed integration terminates an episode too. render_mode:
-    rgb_array, html or None.
+    * case, assignments: as for shoal.Run. An episode ends (is truncated) at time.end.
+    * fish: the fish that learns, by number or name.
+    * actions: names among bias, amplitude and frequency, or a dict with their bounds, {"bias": (-0.3, 0.3)}, which may also have
+      heave (motion.heave, m). An action outside the box is refused.
+    * observations: names among velocity, heading, curvature, muscle, flow, goal, closing, neighbours, sight and action.
+    * reward: weights of speed, cost_of_transport, course and goal, or a function of the swimmer.
+    * goal: a point (x, y), m; a place beside a fish, ("leader", (1.2, 0)); or a function of the time, s, for a goal that moves.
+    * course: the desired course, degree.
+    * sensors: places (n, 2) at which the fish feels the flow, from the nose, in lengths.
+    * act_every: time between two actions, s, a multiple of time.shedding_interval.
+    * vary: bounds of assignments that are drawn at each reset, {"fish[1].start.heading": (170, 190)}.
+    * vision: the eye of the observation sight, a dict of range (lengths), angle (degree), noise (of the distance, as a
+      fraction, and of the direction, rad) and occlusion; {"range": 5, "angle": 300, "noise": (0, 0), "occlusion": True} by default.
+    * far: distance from the goal, in lengths, at which an episode is over (terminated). A failed integration terminates an
+      episode too.
+    * render_mode: rgb_array, html or None.
     """
 
     metadata = {"render_modes": list(_RENDER_MODES), "render_fps": 25}

@@ -274,13 +274,17 @@ def _swept(sweep, relative_to=None) -> list[str]:
 
 def study(case, assignments=None, path=None, overwrite: bool = False, processes: int | None = None,
           progress: bool | None = None, folder=None, sweep: Mapping | None = None, relative_to=None):
-    """Run all members of a case with a sweep (doc/studies.md); returns study.nc as an xarray.Dataset, in which the swept
-    keys are coordinates: data.speed.plot(x="body_modulus"). shoal.grid gives each axis of the sweep a dimension.
+    """Run all members of a case with a sweep (doc/studies.md).
 
-    path: of the folder of the study (None: the name of the case with -study). overwrite: replace a study that exists;
-    else members that are complete are kept. processes: members at once. sweep: {key: values, ...}, a full grid in place
-    of the sweep of the case. relative_to: "first" or another value of the first key of sweep: adds ``ratio_speed`` and so on,
-    the results over those at this value. The path of study.nc is in attrs["path"].
+    Returns study.nc as an xarray.Dataset, in which the swept keys are coordinates: data.speed.plot(x="body_modulus").
+    shoal.grid gives each axis of the sweep a dimension. The path of study.nc is in attrs["path"].
+
+    * path: the folder of the study (None: the name of the case with -study).
+    * overwrite: replace a study that exists; otherwise its complete members are kept.
+    * processes: how many members run at once.
+    * sweep: {key: values, ...}, a full grid in place of the sweep of the case.
+    * relative_to: "first" or another value of the first key of sweep; adds the results over those at this value, as
+      ``ratio_speed`` and so on.
     """
     path = _run_study("study", case, [*strings_of(assignments), *_swept(sweep, relative_to)], path, overwrite, processes, progress, folder)
     return _open_study(path)
@@ -420,19 +424,21 @@ def _number_or_text(text: str):
 def error(case, of, within: float | None = None, models: bool = False, against=None, assignments=None, path=None,
           overwrite: bool = False, processes: int | None = None, progress: bool | None = None, folder=None,
           sensitivity=None, uncertain: Mapping | None = None, start=None) -> list[Estimate]:
-    """Vary every numerical key of a case by `shoal error`; returns quantities with their error bars, per fish and, of a case
-    with a sweep, per point of the sweep, whose swept values are in `at`.
+    """Vary every numerical key of a case by `shoal error`, and return quantities with their error bars.
 
-    of: a quantity or a list of quantities, as "steady_speed". within: refine until the relative errors are smaller.
-    models: repeat the numbers with other choices of the model. against: the path of another case, "FISH=FISH", or along
-    a sweep "first" or another value of the swept key: adds the quantities ``ratio_...`` and ``change_...``, whose errors are those
-    of the comparison: what both share cancels.
-    sensitivity: True, or a list of keys such as "body.modulus": the derivatives d ln Q/d ln p by these numbers of the case, in
-    `sensitivity` of each estimate, in place of errors, which are NaN. uncertain: {key: part}, as {"modulus": 0.1} or "10%": adds
-    the uncertainty of these numbers to the errors.
-    start: the result of a steady state that the first search starts from.
-    path: of the folder of the members, study.nc and error.csv (None: the name of the case with -error). An error that
-    cannot be made smaller than within is a shoal.Error.
+    There is an estimate for each quantity of each fish and, of a case with a sweep, for each point of the sweep, whose swept
+    values are in its attribute `at`. If an error cannot be made smaller than within, a shoal.Error is raised.
+
+    * of: a quantity or a list of quantities, as "steady_speed".
+    * within: refine until the relative errors are smaller.
+    * models: repeat the numbers with other choices of the model.
+    * against: the path of another case, "FISH=FISH", or along a sweep "first" or another value of the swept key. Adds the
+      quantities ``ratio_...`` and ``change_...``, in whose errors that which both values share cancels.
+    * sensitivity: True, or a list of keys such as "body.modulus". The estimates then have the derivatives d ln Q/d ln p with
+      respect to these numbers in `sensitivity`, in place of errors, which are NaN.
+    * uncertain: {key: part}, as {"modulus": 0.1} or "10%"; adds the uncertainty of these numbers to the errors.
+    * start: the result of a steady state from which the first search starts.
+    * path: the folder of the members, study.nc and error.csv (None: the name of the case with -error).
     """
     options = [word for quantity in ([of] if isinstance(of, str) else of) for word in ("--of", text_of(quantity, "of"))]
     options += [] if within is None else ["--within", repr(number_of(within, "within"))]
