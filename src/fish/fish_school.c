@@ -104,7 +104,7 @@ static void wake_set(struct school *school, const struct school_parameters *para
     school->kutta = parameters->sheet.kutta;
     school->removed = wake->removed_circulation;
     school->wake_tolerance = wake->tolerance;
-    school->wake_spacing = 0.65;
+    school->wake_spacing = 0.6;
     school->wake_spare = wake->spare + WAKE_PER_VORTEX * school->n_vortices;
     school->contact = parameters->contact.action;
     school->threads = parameters->threads;

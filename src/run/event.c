@@ -212,7 +212,11 @@ enum status event_water(struct state *state, struct residual *residual, struct i
         event_release(state, school);
     }
 
-    // old vortices and markers go
+    // old vortices and markers go; room for a marker back in every old stretch
+    for (int f = 0; f < school->n_fish; f++) {
+        struct wake *const wake = &state->wake[f];
+        wake_reserve(wake, wake->n_vortex + wake->n_old);
+    }
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < school->n_fish; f++) event->lost[f] = impulse_thin_wake(school, state, f);
 

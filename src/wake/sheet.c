@@ -135,8 +135,8 @@ static void points_add(const struct sheet *sheet, struct sheet_points *points, c
 static void build_old(struct sheet *sheet, const struct fish *fish, const struct school *school,
                       const struct wake *wake, double t) {
     const int n = wake->n_vortex;
-    // a cubic form ends one marker beyond the stretch, of the oldest stretch two
-    const int most = wake->n_old == 1 ? STRETCH_MARKERS : wake->n_old + 2;
+    // the longest forms end with the newest marker of the newest old stretch, or with marker 5 of the oldest stretches
+    const int half = STRETCH_MARKERS / 2, most = (wake->n_old > half ? wake->n_old : half) + half;
     sheet->n_markers = wake->n_old == 0 ? 0 : most < n ? most : n;
     for (int k = 0; k < SHEET_DIAGONALS; k++) {
         memset(sheet->diagonal[k], 0, (size_t)sheet->n_markers * sizeof(double));

@@ -1,12 +1,16 @@
-/* stretch.c: the linear and the cubic form of a stretch, and one pass that drops markers. */
+/* stretch.c: the forms of a stretch, and the passes that drop and restore markers. */
 #include "wake/stretch.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
-// the least and largest ratio of the durations of neighbours for a cubic form
+// the least and largest ratio of the durations of neighbours for a form of more than two markers
 static const double least_ratio = 0.2, largest_ratio = 8;
+
+// the least length of a stretch that gets its middle marker back, over the largest length of two that lose it: no marker
+// comes and goes
+static const double restored_over_dropped = 1.1;
 
 // times are multiples of the interval, but for rounding
 static const double time_rounding = 1e-6;
@@ -15,51 +19,81 @@ static bool is_near(double one, double other, const struct school *school) {
     return fabs(one - other) < time_rounding * school->interval;
 }
 
-// the integrals of l_a dl_b over the stretch `middle` of three, by three Gauss points, which are exact
-static void set_cubic(struct stretch_form *form, const double gap[3], int middle) {
-    static const double place[3] = {0.1127016653792583, 0.5, 0.8872983346207417},
-                        weight[3] = {5. / 18, 8. / 18, 5. / 18};
-    const double node[STRETCH_MARKERS] = {0, gap[0], gap[0] + gap[1], gap[0] + gap[1] + gap[2]};
+/* The Lagrange polynomials l_a of n nodes are scale_a times the product of all tau - node_b but b = a; *scale* takes the
+ * inverse of the product of all node_a - node_b. */
+static void find_scales(int n, const double *node, double scale[STRETCH_MARKERS]) {
+    for (int a = 0; a < n; a++) {
+        double product = 1;
+        for (int b = 0; b < n; b++) product *= b == a ? 1 : node[a] - node[b];
+        scale[a] = 1 / product;
+    }
+}
+
+// the polynomials and their slopes at tau
+static void evaluate_polynomials(int n, const double *node, const double *scale, double tau,
+                                 double value[STRETCH_MARKERS], double slope[STRETCH_MARKERS]) {
+    // products of the factors before node a, then times those behind it
+    double product = 1, rate = 0;
+    for (int a = 0; a < n; a++) {
+        value[a] = scale[a] * product;
+        slope[a] = scale[a] * rate;
+        rate = rate * (tau - node[a]) + product;
+        product *= tau - node[a];
+    }
+    product = 1;
+    rate = 0;
+    for (int a = n - 1; a >= 0; a--) {
+        slope[a] = slope[a] * product + value[a] * rate;
+        value[a] *= product;
+        rate = rate * (tau - node[a]) + product;
+        product *= tau - node[a];
+    }
+}
+
+// the integrals of l_a dl_b over the stretch `middle` between n nodes, by n - 1 Gauss points, which are exact
+static void set_parts(struct stretch_form *form) {
+    static const double cubic[2][3] = {{0.1127016653792583, 0.5, 0.8872983346207417}, {5. / 18, 8. / 18, 5. / 18}};
+    static const double quintic[2][5] = {
+        {0.04691007703066800, 0.2307653449471585, 0.5, 0.7692346550528415, 0.9530899229693320},
+        {0.1184634425280945, 0.2393143352496832, 0.2844444444444444, 0.2393143352496832, 0.1184634425280945}};
+    const int n = form->n;
+    const double *const place = n == 4 ? cubic[0] : quintic[0], *const weight = n == 4 ? cubic[1] : quintic[1];
+    const double own = form->gap[form->middle];
+    double node[STRETCH_MARKERS] = {0}, scale[STRETCH_MARKERS];
+    for (int k = 0; k + 1 < n; k++) node[k + 1] = node[k] + form->gap[k];
+    find_scales(n, node, scale);
     memset(form->part, 0, sizeof form->part);
-    for (int p = 0; p < 3; p++) {
-        const double tau = node[middle] + place[p] * gap[middle];
+    for (int p = 0; p < n - 1; p++) {
         double value[STRETCH_MARKERS], slope[STRETCH_MARKERS];
-        for (int a = 0; a < STRETCH_MARKERS; a++) {
-            value[a] = 1;
-            slope[a] = 0;
-            for (int b = 0; b < STRETCH_MARKERS; b++) {
-                if (b == a) continue;
-                slope[a] = (slope[a] * (tau - node[b]) + value[a]) / (node[a] - node[b]);
-                value[a] *= (tau - node[b]) / (node[a] - node[b]);
-            }
-        }
-        for (int a = 0; a < STRETCH_MARKERS; a++) {
-            for (int b = 0; b < STRETCH_MARKERS; b++) {
-                form->part[a][b] += weight[p] * gap[middle] * value[a] * slope[b];
-            }
+        evaluate_polynomials(n, node, scale, node[form->middle] + place[p] * own, value, slope);
+        for (int a = 0; a < n; a++) {
+            const double weighted = weight[p] * own * value[a];
+            for (int b = 0; b < n; b++) form->part[a][b] += weighted * slope[b];
         }
     }
 }
 
 void stretch_set_form(struct stretch_form *form, const struct wake *wake, const struct school *school, int j) {
-    const int first = j > 0 ? j - 1 : 0;
-    bool is_cubic = j < wake->n_old && first + STRETCH_MARKERS <= wake->n_vortex, is_known = form->n == STRETCH_MARKERS;
-    double gap[3];
-    for (int k = 0; k < 3 && is_cubic; k++) {
-        gap[k] = wake->birth[first + k + 1] - wake->birth[first + k];
-        is_known = is_known && is_near(gap[k], form->gap[k], school);
-    }
-    const double own = is_cubic ? gap[j - first] : 0;
-    for (int k = 0; k < 3 && is_cubic; k++) {
-        is_cubic = gap[k] > 0 && gap[k] >= least_ratio * own && gap[k] <= largest_ratio * own;
-    }
+    // the highest degree that the markers and their times allow
+    for (int n = STRETCH_MARKERS; n > 2 && j < wake->n_old; n -= 2) {
+        const int first = j + 1 > n / 2 ? j + 1 - n / 2 : 0;
+        const double own = wake->birth[j + 1] - wake->birth[j];
+        double gap[STRETCH_MARKERS - 1];
+        bool is_smooth = first + n <= wake->n_vortex, is_known = form->n == n && form->middle == j - first;
+        for (int k = 0; k < n - 1 && is_smooth; k++) {
+            gap[k] = wake->birth[first + k + 1] - wake->birth[first + k];
+            is_known = is_known && is_near(gap[k], form->gap[k], school);
+            is_smooth = gap[k] > 0 && gap[k] >= least_ratio * own && gap[k] <= largest_ratio * own;
+        }
+        if (!is_smooth) continue;
 
-    if (is_cubic) {
         // the form of the stretch before may serve again
-        if (!is_known || j <= 1) set_cubic(form, gap, j - first);
         form->first = first;
-        form->n = STRETCH_MARKERS;
-        memcpy(form->gap, gap, sizeof gap);
+        if (is_known) return;
+        form->n = n;
+        form->middle = j - first;
+        memcpy(form->gap, gap, (size_t)(n - 1) * sizeof *gap);
+        set_parts(form);
         return;
     }
 
@@ -107,10 +141,15 @@ static bool is_odd(const struct wake *wake, const struct fish *fish, const struc
     return fabs(number - nearest) < 1e-3 && fabs(fmod(nearest, 2)) > 0.5;
 }
 
+// the largest distance between the neighbours of a marker that can be dropped
+static double most_spacing(const struct fish *fish, const struct school *school) {
+    const double depth = fish->strip_depth > 0 ? fish->strip_depth / 2 : INFINITY;
+    return school->wake_spacing * fmin(fish->smoothing, depth);
+}
+
 void stretch_drop(struct wake *wake, const struct fish *fish, const struct school *school) {
     const double cosine = 0.86602540378443865;  // of 30 degrees
-    const double depth = fish->strip_depth > 0 ? fish->strip_depth / 2 : INFINITY;
-    const double most = school->wake_spacing * fmin(fish->smoothing, depth);
+    const double most = most_spacing(fish, school);
     double a[2], b[2];
 
     // the way along the sheet from the oldest marker to the tail
@@ -127,5 +166,28 @@ void stretch_drop(struct wake *wake, const struct fish *fish, const struct schoo
         // the number i now belongs to the next marker, which stays
         wake_drop(wake, i);
         way -= behind;
+    }
+}
+
+void stretch_restore(struct wake *wake, const struct fish *fish, const struct school *school) {
+    const double longest = restored_over_dropped * most_spacing(fish, school);
+    struct stretch_form form = {.n = 0};
+    double along[2];
+    for (int j = 1; j < wake->n_old; j++) {
+        // an even number of intervals: a marker was dropped in the middle
+        const double duration = (wake->birth[j + 1] - wake->birth[j]) / school->interval;
+        if (duration < 1.5 || fabs(fmod(round(duration), 2)) > 0.5) continue;
+        if (!(stretch_along(wake, j, along) > longest)) continue;
+        stretch_set_form(&form, wake, school, j);
+        if (form.n < STRETCH_MARKERS) continue;
+
+        const double *const node = wake->birth + form.first;
+        double scale[STRETCH_MARKERS], value[STRETCH_MARKERS], slope[STRETCH_MARKERS];
+        find_scales(form.n, node, scale);
+        evaluate_polynomials(form.n, node, scale, (wake->birth[j] + wake->birth[j + 1]) / 2, value, slope);
+        wake_insert(wake, j, form.first, form.n, value);
+
+        // the next stretch is the newer half of this one
+        j++;
     }
 }

@@ -1,34 +1,37 @@
-/* stretch.h: what a stretch of a free sheet contributes to the markers around it, and which markers of the old part of
- * a sheet can be dropped. doc/model.md, section 7; doc/numerics.md, section 13. Tested by tests/wake/test_stretch.c.
+/* stretch.h: what a stretch of a free sheet contributes to the markers around it, and which markers the old part of
+ * a sheet needs. doc/model.md, section 7; doc/numerics.md, section 13. Tested by tests/wake/test_stretch.c.
  *
- * Stretch j lies between the markers j and j + 1. A young stretch acts at its two ends, an old one at four markers:
+ * Stretch j lies between the markers j and j + 1. A young stretch acts at its two ends, an old one at six markers:
  *
- *     marker    j-1 ------- j ======= j+1 ------- j+2        the parts B_ab of labels b at markers a
- *     a, b       0          1          2           3
+ *     marker    j-2 --- j-1 --- j ===== j+1 --- j+2 --- j+3        the parts B_ab of labels b at markers a
+ *     a, b       0       1      2        3       4       5
  *
- * For the oldest stretch these are the markers 0 to 3. */
+ * For the two oldest stretches these are the markers 0 to 5; with fewer markers, or where durations jump, four or two
+ * markers. */
 #ifndef STRETCH_H
 #define STRETCH_H
 
 #include "fish/fish.h"
 #include "wake/wake.h"
 
-enum { STRETCH_MARKERS = 4 };
+enum { STRETCH_MARKERS = 6 };
 
 /* The integrals of l_a dl_b over a stretch, for a polynomial l_a of each marker. */
 struct stretch_form {
-    int first, n;  /* the oldest of the markers; their number, 2 or 4 */
-    double gap[3]; /* durations of the stretches between the markers of a cubic form, s */
+    int first, n; /* the oldest of the markers; their number, 2, 4 or 6 */
+    int middle;   /* the stretch is this one of those between the markers; like gap, of 4 and 6 markers */
+    double gap[STRETCH_MARKERS - 1]; /* durations of the stretches between the markers, s */
     double part[STRETCH_MARKERS][STRETCH_MARKERS];
 };
 
 /* Set the form of stretch j. A form that starts as zero may serve one stretch after the other: equal durations share a
- * cubic form. */
+ * form. */
 void stretch_set_form(struct stretch_form *form, const struct wake *wake, const struct school *school, int j);
 
 /* At an event, with the newest marker at the tail: count the stretches that have become old; drop markers of the old
- * part. */
+ * part; put a marker back into the middle of every stretch there that has grown too long without it. */
 void stretch_find_old(struct wake *wake, const struct fish *fish, const struct school *school);
 void stretch_drop(struct wake *wake, const struct fish *fish, const struct school *school);
+void stretch_restore(struct wake *wake, const struct fish *fish, const struct school *school);
 
 #endif

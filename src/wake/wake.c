@@ -14,16 +14,20 @@ static void wake_list_arrays(struct wake *wake, double **array[N_ARRAYS]) {
     memcpy(array, all, sizeof all);
 }
 
-static void wake_reserve(struct wake *wake, int capacity) {
+static void wake_grow(struct wake *wake, int capacity) {
     double **array[N_ARRAYS];
     wake_list_arrays(wake, array);
     for (int i = 0; i < N_ARRAYS; i++) GROW(wake->arena, *array[i], capacity);
     wake->capacity = capacity;
 }
 
+void wake_reserve(struct wake *wake, int n) {
+    if (n > wake->capacity) wake_grow(wake, n + n / 2);
+}
+
 void wake_create(struct arena *arena, struct wake *wake, int capacity) {
     *wake = (struct wake){.arena = arena};
-    wake_reserve(wake, capacity);
+    wake_grow(wake, capacity);
 }
 
 int wake_most(const struct school *school, long n_events) {
@@ -35,12 +39,12 @@ int wake_most(const struct school *school, long n_events) {
 }
 
 void wake_resize(struct wake *wake, int n) {
-    if (n > wake->capacity) wake_reserve(wake, n + n / 2);
+    wake_reserve(wake, n);
     wake->n_vortex = n;
 }
 
 void wake_release(struct wake *wake, double x, double y, double circulation, double birth) {
-    if (wake->n_vortex == wake->capacity) wake_reserve(wake, 2 * wake->capacity);
+    wake_reserve(wake, wake->n_vortex + 1);
     const int i = wake->n_vortex++;
     wake->version++;
 
@@ -187,6 +191,23 @@ void wake_drop(struct wake *wake, int i) {
     wake->version++;
 }
 
+void wake_insert(struct wake *wake, int i, int first, int n, const double *weight) {
+    wake_resize(wake, wake->n_vortex + 1);
+    const double birth = (wake->birth[i] + wake->birth[i + 1]) / 2;
+    double **array[N_ARRAYS];
+    wake_list_arrays(wake, array);
+    for (int k = 0; k < N_ARRAYS; k++) {
+        double *const at = *array[k] + i;
+        double value = 0;
+        for (int a = 0; a < n; a++) value += weight[a] * (*array[k])[first + a];
+        memmove(at + 2, at + 1, (size_t)(wake->n_vortex - 2 - i) * sizeof *at);
+        at[1] = value;
+    }
+    wake->birth[i + 1] = birth;
+    if (i < wake->n_old) wake->n_old++;
+    wake->version++;
+}
+
 void wake_add_shed(struct wake *wake, double circulation) {
     // the label of a marker is the circulation shed until the birth of the marker
     for (int i = 0; i < wake->n_vortex && wake->has_markers; i++) wake->circulation[i] += circulation;
@@ -207,7 +228,7 @@ static enum status wake_make_spare(struct wake *wake, const struct school *schoo
                            school->wake_spare, wake->n_added, n);
     }
 
-    if (wake->n_vortex + n > wake->capacity) wake_reserve(wake, 2 * (wake->n_vortex + n));
+    wake_reserve(wake, wake->n_vortex + n);
     wake->n_added += n;
     wake->version++;
     return STATUS_OK;

@@ -71,6 +71,9 @@ void wake_strengths(const struct wake *wake, const struct school *school, double
 /* Advance all vortices to the next event. */
 void wake_advance(struct wake *wake, double interval);
 
+/* Make room for n vortices in all; not in parallel. */
+void wake_reserve(struct wake *wake, int n);
+
 /* Resize to n vortices; new ones have undefined values. */
 void wake_resize(struct wake *wake, int n);
 
@@ -90,6 +93,10 @@ void wake_remove_old(struct wake *wake, const struct school *school, double t);
 
 /* Remove marker i from the sheet: the stretches on both sides become one. */
 void wake_drop(struct wake *wake, int i);
+
+/* Insert a marker into the sheet after marker i, born in the middle of the times of i and i + 1, with all its other
+ * values from the n markers from `first` on by these weights (n). */
+void wake_insert(struct wake *wake, int i, int first, int n, const double *weight);
 
 /* Add shed circulation, m2 s-1, at infinite distance: no vortex changes. */
 void wake_add_shed(struct wake *wake, double circulation);

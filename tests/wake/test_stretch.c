@@ -12,57 +12,59 @@
 #define TIME "time: {end: 4, shedding_interval: 0.02, output_interval: 0.02}\n"
 #define FISH(span) "fish: [{nodes: 13, force: pressure, pressure: {span: " span "}}]\n"
 
-static double cube(double t) {
-    return 1 + t * (2 - t * (3 - 4 * t));
+// a polynomial of this degree and its slope
+static double power(double t, int degree) {
+    return 1 + 2 * t - pow(t - 0.3, degree);
 }
-static double cube_slope(double t) {
-    return 2 - t * (6 - 12 * t);
+static double power_slope(double t, int degree) {
+    return 2 - degree * pow(t - 0.3, degree - 1);
 }
 
-// integral of f dg for cubic f and g, by Simpson's rule in many steps
-static double integral(double from, double to) {
+// integral of f dg for f = power(t) and g = power(1 - t), by Simpson's rule in many steps
+static double integral(double from, double to, int degree) {
     enum { STEPS = 1000 };
     double sum = 0;
     for (int k = 0; k < STEPS; k++) {
-        const double h = (to - from) / STEPS, a = from + k * h, m = a + h / 2, b = a + h;
-        sum += h / 6 * (cube(a) * cube_slope(1 - a) + 4 * cube(m) * cube_slope(1 - m) + cube(b) * cube_slope(1 - b));
+        const double h = (to - from) / STEPS, at[3] = {from + k * h, from + k * h + h / 2, from + k * h + h};
+        double product[3];
+        for (int m = 0; m < 3; m++) product[m] = power(at[m], degree) * power_slope(1 - at[m], degree);
+        sum -= h / 6 * (product[0] + 4 * product[1] + product[2]);  // the rate of power(1 - t)
     }
-    return -sum;  // the rate of cube(1 - t)
+    return sum;
 }
 
-TEST(cubic_integrals_are_exact_at_any_spacing) {
+TEST(forms_are_exact_for_polynomials_at_any_spacing) {
     struct setup setup = setup_of(TIME FISH("finite"));
     struct wake *const wake = &setup.state->wake[0];
     const double birth[] = {0, 0.2, 0.3, 0.4, 0.8, 0.9};
-    for (int i = 0; i < 6; i++) wake_release(wake, i, 0, cube(1 - birth[i]), birth[i]);
+    const int want[] = {6, 6, 6, 4, 2};  // next to the newest marker are fewer
+    for (int i = 0; i < 6; i++) wake_release(wake, i, 0, 0, birth[i]);
     wake->n_old = 5;
     struct stretch_form form = {.n = 0};
     for (int j = 0; j < 5; j++) {
         stretch_set_form(&form, wake, setup.school, j);
-        if (j == 4) break;  // the newest stretch has no neighbour
-        assert_int_equal(form.n, 4);
+        assert_int_equal(form.n, want[j]);
+        const int degree = form.n - 1;
         double sum = 0;
-        for (int a = 0; a < 4; a++) {
+        for (int a = 0; a < form.n; a++) {
             double of_column = 0;
-            for (int b = 0; b < 4; b++) {
-                sum += form.part[a][b] * cube(birth[form.first + a]) * wake->circulation[form.first + b];
+            for (int b = 0; b < form.n; b++) {
+                sum += form.part[a][b] * power(birth[form.first + a], degree) * power(1 - birth[form.first + b], degree);
                 of_column += form.part[b][a];
             }
             // circulation goes from one end to the other, and no further
             const int i = form.first + a;
-            NEAR(of_column, i == j + 1 ? 1 : i == j ? -1 : 0, 1e-14, 0);
+            NEAR(of_column, i == j + 1 ? 1 : i == j ? -1 : 0, 1e-13, 0);
         }
-        NEAR(sum, integral(birth[j], birth[j + 1]), 1e-12, 0);
+        NEAR(sum, integral(birth[j], birth[j + 1], degree), 1e-12, 0);
     }
-    assert_int_equal(form.n, 2);
 }
 
-// of equal durations; the same form for every stretch but the oldest
-TEST(stretches_next_to_a_jump_of_the_times_are_linear) {
+TEST(forms_have_fewer_markers_near_a_jump_of_the_times) {
     struct setup setup = setup_of(TIME FISH("finite"));
     struct wake *const wake = &setup.state->wake[0];
     const double birth[] = {0, 0.1, 0.2, 0.3, 0.3, 0.4, 0.5, 0.6, 1.5, 1.6, 1.7, 1.8};
-    const int want[] = {4, 4, 2, 2, 2, 4, 2, 2, 2, 4, 2};
+    const int want[] = {4, 4, 2, 2, 2, 4, 2, 2, 2, 4, 2};  // six only further away
     for (int i = 0; i < 12; i++) wake_release(wake, i, 0, i, birth[i]);
     wake->n_old = 10;
     struct stretch_form form = {.n = 0};
@@ -92,6 +94,12 @@ static struct setup wavy(const char *text, int n) {
     return setup;
 }
 
+// the place of the tail, x
+static double wake_origin(const struct setup *setup) {
+    const struct fish *const fish = &setup->school->fish[0];
+    return setup->state->y[fish->at.x + fish->n_nodes - 1];
+}
+
 static double away(const struct wake *wake, int i) {
     const int newest = wake->n_vortex - 1;
     return hypot(wake->x[i] - wake->x[newest], wake->y[i] - wake->y[newest]);
@@ -111,7 +119,7 @@ TEST(dropped_markers_leave_the_others_and_the_spacing_below_the_smoothing) {
         stretch_drop(wake, fish, setup.school);
     }
     assert_int_equal(wake->n_vortex - wake->n_old, n_young);
-    BELOW(wake->n_vortex, 6 * N / 10);
+    BELOW(wake->n_vortex, 65 * N / 100);
     NEAR(wake->birth[0], 0, 0, 0);
     int n_wide = 0;
     for (int i = 0; i + 1 < wake->n_vortex; i++) {
@@ -125,7 +133,7 @@ TEST(dropped_markers_leave_the_others_and_the_spacing_below_the_smoothing) {
         NEAR(level, round(level), 1e-9, 0);
         AT_MOST(gap, 1.0001 / 12);
         const double length = hypot(wake->x[i + 1] - wake->x[i], wake->y[i + 1] - wake->y[i]);
-        AT_MOST(length, 0.065);
+        AT_MOST(length, 0.06);
         n_wide += gap > 0.03;
         if (i >= wake->n_old) NEAR(gap, 0.02, 1e-12, 0);
     }
@@ -164,6 +172,56 @@ TEST(nothing_is_dropped_where_the_wake_is_sharp_slender_or_fades_fast) {
     }
 }
 
+TEST(markers_return_to_stretches_that_grow) {
+    enum { N = 150 };
+    struct setup setup = wavy(TIME "wake: {shedding: sheet, smoothing: 0.1, lifetime: 3}\n" FISH("finite"), N);
+    const struct fish *const fish = &setup.school->fish[0];
+    struct wake *const wake = &setup.state->wake[0];
+    stretch_find_old(wake, fish, setup.school);
+    const int n_young = N - wake->n_old;
+    for (int before = 0; before != wake->n_vortex;) {
+        before = wake->n_vortex;
+        stretch_drop(wake, fish, setup.school);
+    }
+    const int n_dropped = N - wake->n_vortex;
+    ABOVE(n_dropped, 40);
+
+    // what has not grown stays as it is
+    stretch_restore(wake, fish, setup.school);
+    assert_int_equal(wake->n_vortex, N - n_dropped);
+
+    // the sheet becomes ten times as long: one pass divides a stretch at most once, the last leaves the first wake
+    const double origin = wake->x[0], shift = 100;
+    for (int i = 0; i < wake->n_vortex; i++) {
+        wake->x[i] = shift + 10 * (wake->x[i] - origin);
+        wake->u[i] = sin(wake->birth[i]);
+        wake->v_before[i] = cos(wake->birth[i]);
+    }
+    int n_passes = 0;
+    for (int before = 0; before != wake->n_vortex; n_passes++) {
+        before = wake->n_vortex;
+        stretch_restore(wake, fish, setup.school);
+        AT_MOST(wake->n_vortex, 2 * before);
+    }
+    ABOVE(n_passes, 1);
+    assert_int_equal(wake->n_vortex - wake->n_old, n_young);
+
+    // the oldest stretches have no marker before them, and keep theirs
+    AT_MOST(wake->n_vortex, N);
+    ABOVE(wake->n_vortex, N - 4);
+    for (int i = 0; i < wake->n_vortex; i++) {
+        const double t = wake->birth[i];
+        NEAR(wake->circulation[i], 0.1 * cos(6 * t) * t, 2e-6, 0);
+        NEAR(wake->y[i], 0.05 * sin(6.28 * t), 2e-6, 0);
+        NEAR(wake->x[i], shift + 10 * (0.8 * (setup.state->t - t) + wake_origin(&setup) - origin), 1e-9, 0);
+        NEAR(wake->u[i], sin(t), 1e-7, 0);
+        NEAR(wake->v_before[i], cos(t), 1e-7, 0);
+        NEAR(wake->rate[i], 0.1 * sin(t), 1e-7, 0);
+        NEAR(wake->rate_before[i], 0.1 * sin(t), 1e-7, 0);
+        if (i > 4 && i < wake->n_vortex) NEAR(t - wake->birth[i - 1], 0.02, 1e-12, 0);
+    }
+}
+
 TEST(vortices_from_outside_stay) {
     struct setup setup = wavy(TIME "wake: {shedding: sheet, lifetime: 3, spare_vortices: 3}\n" FISH("infinite"), 100);
     struct wake *const wake = &setup.state->wake[0];
@@ -173,6 +231,7 @@ TEST(vortices_from_outside_stay) {
         wake_release(wake, wake->x[wake->n_vortex - 1] - 0.016, 0, 0, wake->birth[wake->n_vortex - 1] + 0.02);
         stretch_find_old(wake, fish, setup.school);
         stretch_drop(wake, fish, setup.school);
+        stretch_restore(wake, fish, setup.school);
     }
     ABOVE(wake->n_old, 30);
     int found = 0;
@@ -218,7 +277,7 @@ TEST(old_stretches_act_from_their_markers_in_every_view) {
                 }
             }
         }
-        assert_int_equal(sheet.n_markers, wake->n_old + 2);
+        assert_int_equal(sheet.n_markers, wake->n_old + 3);
         for (int i = 0; i < sheet.n_markers; i++) {
             const double age = t - wake->birth[i];
             const double left = k == 0 ? wake_strength_within(school, age - school->interval / 2, 0.3) : 1;
@@ -293,15 +352,14 @@ static double moved_by_dropping(const char *text, double end, double *saved) {
 TEST(dropping_moves_bodies_by_less_than_other_errors) {
     static const struct {
         const char *name, *fish;
-        double end,
-            bound[2];  // finite, infinite span, m
+        double end, bound[2];  // finite, infinite span, m
     } cases[] = {
-        {"one fish", "fish: [{}]\n", 3, {1e-6, 1e-6}},
-        // in an undecayed wake: less than a third of the error of the default interval, 5e-4 m
-        {"a follower", "fish: [{}, {start: {position: [2.5, 0.1]}}]\n", 3.5, {2e-4, 2e-4}},
-        {"in antiphase", "fish: [{}, {start: {position: [0, 0.4]}, wave: {phase: 180}}]\n", 3, {1e-5, 1e-5}},
-        {"a wall", "fluid: {walls: [-0.3]}\nfish: [{}]\n", 3, {5e-6, 5e-6}},
-        {"a U-turn", "fish: [{control: {law: heading, desired_heading: 0}}]\n", 7, {5e-6, 1e-5}},
+        {"one fish", "fish: [{}]\n", 3, {1e-7, 1e-7}},
+        // in an undecayed wake
+        {"a follower", "fish: [{}, {start: {position: [2.5, 0.1]}}]\n", 3.5, {2e-5, 2e-5}},
+        {"in antiphase", "fish: [{}, {start: {position: [0, 0.4]}, wave: {phase: 180}}]\n", 3, {1e-7, 1e-7}},
+        {"a wall", "fluid: {walls: [-0.3]}\nfish: [{}]\n", 3, {1e-7, 2e-7}},
+        {"a U-turn", "fish: [{control: {law: heading, desired_heading: 0}}]\n", 7, {1e-6, 1e-6}},
     };
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
         for (int k = 0; k < 2; k++) {
@@ -312,7 +370,21 @@ TEST(dropping_moves_bodies_by_less_than_other_errors) {
             print_message("%s, %s span: moved %.2g m, %.0f %% of the markers dropped\n", cases[c].name,
                           k == 0 ? "finite" : "infinite", moved, 100 * saved);
             BELOW(moved, cases[c].bound[k]);
-            ABOVE(saved, 0.25);
+            ABOVE(saved, 0.2);
         }
     }
+}
+
+/* The wakes of a diamond strain each other. Without the markers that return, the balance is 0.13 N s after 6.5 s, whatever
+ * the interval. */
+TEST(the_momentum_of_wakes_that_strain_each_other_is_balanced) {
+    struct simulation *const simulation = school_simulation(
+        "time: {end: 8, shedding_interval: 0.02}\nwake: {lifetime: 8}\ndefaults: {fish: {nodes: 13, start: {speed: 0.81}}}\n"
+        "fish: [{}, {start: {position: [1.4, -0.5]}}, {start: {position: [1.4, 0.5]}}, {start: {position: [2.8, 0]}}]\n");
+    school_run(simulation, 6.5);
+    simulate_measure(simulation);
+    const double *const balance = simulation->diagnostics->momentum_balance;
+    print_message("balance %.2g N s\n", hypot(balance[0], balance[1]));
+    BELOW(hypot(balance[0], balance[1]), 0.02);
+    BELOW(simulation->state->wake[0].n_vortex, 270);  // of 326
 }
