@@ -8,8 +8,8 @@
 // the least and largest ratio of the durations of neighbours for a form of more than two markers
 static const double least_ratio = 0.2, largest_ratio = 8;
 
-// the least length of a stretch that gets its middle marker back, over the largest length of two that lose it: no marker
-// comes and goes
+// the least length of a stretch that gets its middle marker back, over the largest length of two that lose it;
+// above 1, so that no marker comes and goes
 static const double restored_over_dropped = 1.1;
 
 // times are multiples of the interval, but for rounding
@@ -19,8 +19,7 @@ static bool is_near(double one, double other, const struct school *school) {
     return fabs(one - other) < time_rounding * school->interval;
 }
 
-/* The Lagrange polynomials l_a of n nodes are scale_a times the product of all tau - node_b but b = a; *scale* takes the
- * inverse of the product of all node_a - node_b. */
+/* The Lagrange polynomials l_a of n nodes are scale_a times the product of tau - node_b over all b but a. */
 static void find_scales(int n, const double *node, double scale[STRETCH_MARKERS]) {
     for (int a = 0; a < n; a++) {
         double product = 1;

@@ -49,7 +49,8 @@ TEST(forms_are_exact_for_polynomials_at_any_spacing) {
         for (int a = 0; a < form.n; a++) {
             double of_column = 0;
             for (int b = 0; b < form.n; b++) {
-                sum += form.part[a][b] * power(birth[form.first + a], degree) * power(1 - birth[form.first + b], degree);
+                sum +=
+                    form.part[a][b] * power(birth[form.first + a], degree) * power(1 - birth[form.first + b], degree);
                 of_column += form.part[b][a];
             }
             // circulation goes from one end to the other, and no further
@@ -375,12 +376,14 @@ TEST(dropping_moves_bodies_by_less_than_other_errors) {
     }
 }
 
-/* The wakes of a diamond strain each other. Without the markers that return, the balance is 0.13 N s after 6.5 s, whatever
- * the interval. */
+/* The wakes of a diamond strain each other. Without the markers that return, the balance is 0.13 N s after 6.5 s,
+ * whatever the interval. */
 TEST(the_momentum_of_wakes_that_strain_each_other_is_balanced) {
     struct simulation *const simulation = school_simulation(
-        "time: {end: 8, shedding_interval: 0.02}\nwake: {lifetime: 8}\ndefaults: {fish: {nodes: 13, start: {speed: 0.81}}}\n"
-        "fish: [{}, {start: {position: [1.4, -0.5]}}, {start: {position: [1.4, 0.5]}}, {start: {position: [2.8, 0]}}]\n");
+        "time: {end: 8, shedding_interval: 0.02}\nwake: {lifetime: 8}\ndefaults: {fish: {nodes: 13, start: {speed: "
+        "0.81}}}\n"
+        "fish: [{}, {start: {position: [1.4, -0.5]}}, {start: {position: [1.4, 0.5]}}, {start: {position: [2.8, "
+        "0]}}]\n");
     school_run(simulation, 6.5);
     simulate_measure(simulation);
     const double *const balance = simulation->diagnostics->momentum_balance;
