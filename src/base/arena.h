@@ -16,8 +16,10 @@
  * names of unfinished files are listed by the process (durable_remove_parts); the lock of NetCDF is taken outside of
  * the boundary. A file on the disk needs nothing: it is whole at every instant, because the process may be killed.
  *
- * No memory is requested in a parallel region, out of which no jump is possible; arena_new asserts it. A jump out of a
- * callback of SUNDIALS leaves objects of SUNDIALS that can only be freed, which is what the owner does. */
+ * No memory is requested in a parallel region, out of which no jump is possible; arena_new asserts it. Libraries report
+ * their own lack of memory, and the call of the library fails. The equations may need more room while SUNDIALS
+ * evaluates them, because wakes grow; the jump then leaves objects of SUNDIALS that can only be freed, which is what
+ * their owner does. */
 #ifndef ARENA_H
 #define ARENA_H
 

@@ -237,7 +237,7 @@ void fish_factors_set_up(struct fish_factors *factors) {
 enum status fish_factors_status(const struct fish_factors *factors) {
     const struct sparse_factors *const parts[] = {factors->whole, factors->a};
     for (int i = 0; i < 2; i++) {
-        if (parts[i] && sparse_factors_lack_memory(parts[i])) arena_lack(factors->arena, 0);
+        if (parts[i] && sparse_factors_lack_memory(parts[i])) return status_fail(STATUS_MEMORY, "out of memory: KLU");
     }
     return factors->status;
 }

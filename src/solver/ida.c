@@ -166,6 +166,10 @@ static enum status ida_first_step(struct ida *solver) {
     return STATUS_OK;
 }
 
+static void release_ida(void *ida) {
+    IDAFree(&ida);
+}
+
 static enum status ida_create(struct arena *arena, void **created, struct residual *residual, struct state *state,
                               const struct integrator_options *options) {
     const struct school *const school = residual->school;
@@ -220,7 +224,7 @@ static enum status ida_create(struct arena *arena, void **created, struct residu
     solver->newton = ida_newton_create(&solver->context, school, rules);
 
     void *const ida = solver->ida =
-        sundials_context_own(&solver->context, OWNED_IDA, IDACreate(solver->context.context));
+        sundials_own(solver->context.arena, release_ida, IDACreate(solver->context.context));
     if (IDASetErrHandlerFn(ida, sundials_context_message, &solver->failure) || IDASetUserData(ida, solver) ||
         IDAInit(ida, residual_callback, state->t, solver->y, solver->yp) || IDAWFtolerances(ida, weights_callback) ||
         IDASetId(ida, solver->kinds) || IDASetSuppressAlg(ida, options->error_test == ERROR_TEST_POSITIONS) ||
@@ -229,7 +233,7 @@ static enum status ida_create(struct arena *arena, void **created, struct residu
         IDASetMaxOrd(ida, options->order) || IDASetDeltaCjLSetup(ida, cj_change) ||
         IDASetEtaFixedStepBounds(ida, kept_from, kept_to) || IDASetMaxErrTestFails(ida, 20) ||
         IDASetMaxConvFails(ida, 20) || IDASetMinStep(ida, 1e-10 * school->interval)) {
-        return status_fail(STATUS_SOLVER, "IDA cannot be set up: %s", status_message());
+        return sundials_context_failed(&solver->context, "IDA");
     }
     *created = solver;
     return ida_first_step(solver);
@@ -384,7 +388,7 @@ static enum status ida_step(void *data, double t, double *reached) {
     if (IDASetStopTime(solver->ida, end)) return ida_failed(solver, IDA_ILL_INPUT);
     solver->failure = STATUS_OK;
     const int code = IDASolve(solver->ida, t, &solver->reached, solver->y, solver->yp, IDA_ONE_STEP);
-    if (solver->failure == STATUS_STOPPED) return STATUS_STOPPED;
+    if (solver->failure == STATUS_STOPPED || solver->failure == STATUS_MEMORY) return solver->failure;
     ida_trace_result(solver, code >= 0);
     if (code < 0) return ida_failed(solver, code);
     if (code == IDA_TSTOP_RETURN) solver->reached = end;

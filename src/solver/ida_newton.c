@@ -254,6 +254,10 @@ static int newton_failures(SUNNonlinearSolver solver, long *failures) {
     return 0;
 }
 
+static void release_newton(void *newton) {
+    SUNNonlinSolFreeEmpty(newton);
+}
+
 SUNNonlinearSolver ida_newton_create(struct sundials_context *context, const struct school *school,
                                      struct ida_newton_rules rules) {
     struct arena *const arena = context->arena;
@@ -264,8 +268,7 @@ SUNNonlinearSolver ida_newton_create(struct sundials_context *context, const str
     newton->correction = sundials_context_vector(context, NULL);
     for (int i = 0; i < N_PAST; i++) newton->past[i] = sundials_context_vector(context, NULL);
 
-    const SUNNonlinearSolver solver =
-        sundials_context_own(context, OWNED_CUSTOM_NEWTON, SUNNonlinSolNewEmpty(context->context));
+    const SUNNonlinearSolver solver = sundials_own(arena, release_newton, SUNNonlinSolNewEmpty(context->context));
     solver->content = newton;
     solver->ops->gettype = newton_type;
     solver->ops->initialize = newton_initialize;

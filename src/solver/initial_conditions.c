@@ -102,7 +102,7 @@ enum status initial_conditions_create(struct arena *arena, struct initial_condit
     c->inverse_scales = sundials_context_vector(&c->context, c->inverse_scale);
     c->linear = linear_sundials_create(&c->context, c->jacobian, c->scale, linear_tolerance);
     sundials_context_reserve(&c->context, 12);  // KINSOL clones 5
-    c->kinsol = sundials_context_own(&c->context, OWNED_KINSOL, KINCreate(c->context.context));
+    c->kinsol = sundials_own(c->context.arena, sundials_release_kinsol, KINCreate(c->context.context));
     // full Newton steps, because the equations are nearly linear, and a new Jacobian for each
     if (KINSetErrHandlerFn(c->kinsol, sundials_context_message, &c->failure) || KINSetUserData(c->kinsol, c) ||
         KINInit(c->kinsol, algebraic_value, c->solution) ||
@@ -110,7 +110,7 @@ enum status initial_conditions_create(struct arena *arena, struct initial_condit
         KINSetJacFn(c->kinsol, algebraic_jacobian) || KINSetMaxSetupCalls(c->kinsol, 1) ||
         KINSetFuncNormTol(c->kinsol, tolerance) || KINSetScaledStepTol(c->kinsol, 1e-14) ||
         KINSetNumMaxIters(c->kinsol, 50) || KINSetMaxNewtonStep(c->kinsol, 1e30)) {
-        return status_fail(STATUS_SOLVER, "KINSOL cannot be set up: %s", status_message());
+        return sundials_context_failed(&c->context, "KINSOL");
     }
     *solver = c;
     return STATUS_OK;
@@ -182,7 +182,7 @@ enum status initial_conditions_solve(struct initial_conditions *c, const struct 
     long iterations = 0;
     KINGetNumNonlinSolvIters(c->kinsol, &iterations);
     c->iterations += iterations;
-    if (c->failure == STATUS_STOPPED) return STATUS_STOPPED;
+    if (c->failure == STATUS_STOPPED || c->failure == STATUS_MEMORY) return c->failure;
     int worst;
     const bool is_rounded = code == KIN_MAXITER_REACHED && largest_residual(c, &worst) <= rounded;
     if (code < 0 && !is_rounded) return initial_failed(c, code);

@@ -50,7 +50,7 @@ struct linear {
     struct whole *whole; /* NULL: by blocks */
     struct block *block; /* by blocks                                                                   (n_fish) */
     long solves, iterations;
-    /* GMRES, created for the first coupled system: solution, right-hand side, 1/(sqrt(n_unknowns) scale) */
+    /* GMRES, with more than one fish: solution, right-hand side, 1/(sqrt(n_unknowns) scale) */
     struct sundials_context context;
     N_Vector x, b, weights;
     SUNLinearSolver gmres;
@@ -73,6 +73,8 @@ static struct whole *whole_create(struct arena *arena, const struct school *scho
     return whole;
 }
 
+static void gmres_create(struct linear *linear);
+
 struct linear *linear_create(struct arena *arena, const struct jacobian *jacobian, const double *scale,
                              struct linear_tolerance tolerance) {
     const struct school *const school = jacobian->school;
@@ -92,6 +94,7 @@ struct linear *linear_create(struct arena *arena, const struct jacobian *jacobia
         linear->block[f].factors = fish_factors_create(arena, &school->fish[f], jacobian->own[f]);
         NEW(arena, linear->block[f].update, jacobian->own[f]->n);
     }
+    if (school->n_fish > 1) gmres_create(linear);
     return linear;
 }
 
@@ -158,7 +161,7 @@ static enum status whole_setup(struct linear *linear) {
     whole_each(whole, jacobian, whole_place_entry);
 
     const bool is_regular = sparse_factors_set_up(whole->factors, columns);
-    if (sparse_factors_lack_memory(whole->factors)) arena_lack(linear->arena, 0);
+    if (sparse_factors_lack_memory(whole->factors)) return status_fail(STATUS_MEMORY, "out of memory: KLU");
     if (!is_regular) return status_fail(whole->is_set_up ? STATUS_RETRY : STATUS_SOLVER, "the Jacobian is singular");
     whole->is_set_up = true;
     return STATUS_OK;
@@ -199,6 +202,7 @@ enum status linear_setup(struct linear *linear) {
     for (int f = 0; f < school->n_fish; f++) {
         const enum status status = fish_factors_status(linear->block[f].factors);
         if (status == STATUS_OK) continue;
+        if (status == STATUS_MEMORY) return status;
         return status_fail(status, "the Jacobian of fish %s is singular", school->fish[f].name);
     }
     return STATUS_OK;
@@ -333,6 +337,7 @@ static void gmres_create(struct linear *linear) {
     linear->x = sundials_context_vector(&linear->context, linear->right);
     linear->b = sundials_context_vector(&linear->context, linear->right);
     linear->weights = sundials_context_vector(&linear->context, linear->weight);
+
     sundials_context_reserve(&linear->context, MAX_ITERATIONS + 8);
 
     linear->gmres =
@@ -361,7 +366,6 @@ enum status linear_solve(struct linear *linear, const double *b, double *x) {
 
     // x is now the solution without couplings, from which GMRES starts
     if (!linear->whole && jacobian->n_couplings > 0) {
-        if (!linear->gmres) gmres_create(linear);
         N_VSetArrayPointer(x, linear->x);
         const double start = N_VWL2Norm(linear->x, linear->weights);
         const double limit = jacobian->has_contacts
@@ -435,12 +439,16 @@ static int solver_solve(SUNLinearSolver solver, SUNMatrix matrix, N_Vector x, N_
     return *linear->of_callback;
 }
 
+static void release_shell(void *solver) {
+    SUNLinSolFreeEmpty(solver);
+}
+
 struct linear_sundials linear_sundials_create(struct sundials_context *context, const struct jacobian *jacobian,
                                               const double *scale, struct linear_tolerance tolerance) {
     struct linear_sundials made = {.linear = linear_create(context->arena, jacobian, scale, tolerance)};
     made.linear->of_callback = context->failure;
-    made.matrix = sundials_context_own(context, OWNED_MATRIX, SUNMatNewEmpty(context->context));
-    made.solver = sundials_context_own(context, OWNED_CUSTOM_LINEAR, SUNLinSolNewEmpty(context->context));
+    made.matrix = sundials_own(context->arena, sundials_release_matrix, SUNMatNewEmpty(context->context));
+    made.solver = sundials_own(context->arena, release_shell, SUNLinSolNewEmpty(context->context));
     made.matrix->ops->getid = matrix_id;
     made.matrix->ops->zero = matrix_zero;
     made.solver->content = made.linear;

@@ -32,6 +32,10 @@ static int newton_jacobian_of(N_Vector u, N_Vector value, SUNMatrix matrix, void
     return solver->failure == STATUS_OK ? 0 : -1;
 }
 
+static void release_linear(void *linear) {
+    SUNLinSolFree(linear);
+}
+
 enum status newton_solve(struct arena *arena, const struct newton *problem, double *u) {
     ARENA(scratch, arena, "Newton's method");
     struct solver *solver;
@@ -44,11 +48,11 @@ enum status newton_solve(struct arena *arena, const struct newton *problem, doub
     sundials_context_create(context, scratch, problem->n, 1, &solver->failure);
     const N_Vector unknowns = sundials_context_vector(context, u), scales = sundials_context_vector(context, inverse);
     const SUNMatrix matrix =
-        sundials_context_own(context, OWNED_MATRIX, SUNDenseMatrix(problem->n, problem->n, context->context));
+        sundials_own(scratch, sundials_release_matrix, SUNDenseMatrix(problem->n, problem->n, context->context));
     const SUNLinearSolver linear =
-        sundials_context_own(context, OWNED_LINEAR, SUNLinSol_Dense(unknowns, matrix, context->context));
+        sundials_own(scratch, release_linear, SUNLinSol_Dense(unknowns, matrix, context->context));
     sundials_context_reserve(context, 12);  // KINSOL clones 5
-    void *const kinsol = sundials_context_own(context, OWNED_KINSOL, KINCreate(context->context));
+    void *const kinsol = sundials_own(scratch, sundials_release_kinsol, KINCreate(context->context));
 
     // the step tolerance is so small that short steps do not end the iteration
     if (KINSetErrHandlerFn(kinsol, sundials_context_message, &solver->failure) || KINSetUserData(kinsol, solver) ||
@@ -56,7 +60,7 @@ enum status newton_solve(struct arena *arena, const struct newton *problem, doub
         KINSetJacFn(kinsol, newton_jacobian_of) || KINSetMaxSetupCalls(kinsol, problem->reuse) ||
         KINSetFuncNormTol(kinsol, problem->tolerance) || KINSetScaledStepTol(kinsol, 1e-14) ||
         KINSetNumMaxIters(kinsol, problem->max_iterations) || KINSetMaxNewtonStep(kinsol, problem->max_step)) {
-        return status_fail(STATUS_SOLVER, "KINSOL cannot be set up: %s", status_message());
+        return sundials_context_failed(context, "KINSOL");
     }
 
     // five steps of the largest allowed size in a row are no reason to stop

@@ -69,6 +69,14 @@ static int rates_callback(sunrealtype t, N_Vector y, N_Vector rates, void *data)
     return solver->failure;
 }
 
+static void release_tableau(void *tableau) {
+    ARKodeButcherTable_Free(tableau);
+}
+
+static void release_arkode(void *arkode) {
+    ARKodeFree(&arkode);
+}
+
 static enum status runge_kutta_create(struct arena *arena, void **created, struct residual *residual,
                                       struct state *state, const struct integrator_options *options) {
     const struct school *const school = residual->school;
@@ -105,7 +113,7 @@ static enum status runge_kutta_create(struct arena *arena, void **created, struc
     const struct butcher_tableau *const tableau = step > 0 ? properties->fixed : properties->adaptive;
     const int n_stages = tableau->n_stages;
     const ARKodeButcherTable table =
-        sundials_context_own(context, OWNED_TABLEAU, ARKodeButcherTable_Alloc(n_stages, tableau->embedded != NULL));
+        sundials_own(context->arena, release_tableau, ARKodeButcherTable_Alloc(n_stages, tableau->embedded != NULL));
     table->q = tableau->order;
     table->p = tableau->embedded_order;
     for (int i = 0; i < n_stages; i++) {
@@ -115,8 +123,8 @@ static enum status runge_kutta_create(struct arena *arena, void **created, struc
         for (int j = 0; j < n_stages; j++) table->A[i][j] = tableau->a[i * n_stages + j];
     }
 
-    void *const arkode = solver->arkode = sundials_context_own(
-        context, OWNED_ARKODE, ARKStepCreate(rates_callback, NULL, state->t, solver->y, context->context));
+    void *const arkode = solver->arkode = sundials_own(
+        context->arena, release_arkode, ARKStepCreate(rates_callback, NULL, state->t, solver->y, context->context));
     // At the stop time 6.4 interpolates, and at order one it does so by a constant: Hermite's interpolant would be the
     // mean of both ends of the step, Lagrange's is the solution at the end.
     if (ARKStepSetErrHandlerFn(arkode, sundials_context_message, &solver->failure) ||
@@ -125,7 +133,7 @@ static enum status runge_kutta_create(struct arena *arena, void **created, struc
         ARKodeSVtolerances(arkode, 0, solver->tolerances) || ARKodeSetMaxNumSteps(arkode, -1) ||
         ARKodeSetMaxErrTestFails(arkode, 20) || ARKodeSetMinStep(arkode, step > 0 ? 0 : 1e-10 * school->interval) ||
         (step > 0 && ARKodeSetFixedStep(arkode, step))) {
-        return status_fail(STATUS_SOLVER, "ARKODE cannot be set up: %s", status_message());
+        return sundials_context_failed(context, "ARKODE");
     }
     *created = solver;
     return STATUS_OK;
@@ -211,7 +219,7 @@ static enum status runge_kutta_step(void *data, double t, double *reached) {
     solver->failure = STATUS_OK;
     status_clear();
     const int code = ARKodeEvolve(solver->arkode, t, solver->y, reached, ARK_ONE_STEP);
-    if (solver->failure == STATUS_STOPPED) return STATUS_STOPPED;
+    if (solver->failure == STATUS_STOPPED || solver->failure == STATUS_MEMORY) return solver->failure;
     if (code < 0) return unstable(solver, *reached, status_message());
     if (code == ARK_TSTOP_RETURN) *reached = t;
 

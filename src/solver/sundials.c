@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/parallel.h"
 #include "base/wide.h"
@@ -71,47 +72,20 @@ static void scale(double a, N_Vector x, N_Vector z) {
     multiply(context_of(z)->n, a, N_VGetArrayPointer(x), N_VGetArrayPointer(z));
 }
 
-// the arena releases all vectors
-static void keep(N_Vector vector) {
-    (void)vector;
-}
+// ---- vectors
 
-/* An object and its kind, for the arena. */
-struct sundials_owned {
-    enum sundials_owned_kind kind;
-    void *object;
-};
-
-static void release_owned(void *data) {
-    struct sundials_owned *const owned = data;
-    void *const object = owned->object;
-    switch (owned->kind) {
-        case OWNED_CONTEXT: SUNContext_Free(object); return;
-        case OWNED_VECTOR:
-            if (context_of(object)->threads > 1) {
-                N_VDestroy_OpenMP(object);
-            } else {
-                N_VDestroy_Serial(object);
-            }
-            return;
-        case OWNED_MATRIX: SUNMatDestroy(object); return;
-        case OWNED_LINEAR: SUNLinSolFree(object); return;
-        case OWNED_CUSTOM_LINEAR: SUNLinSolFreeEmpty(object); return;
-        case OWNED_CUSTOM_NEWTON: SUNNonlinSolFreeEmpty(object); return;
-        case OWNED_TABLEAU: ARKodeButcherTable_Free(object); return;
-        case OWNED_ARKODE: ARKodeFree(&owned->object); return;
-        case OWNED_IDA: IDAFree(&owned->object); return;
-        case OWNED_KINSOL: KINFree(&owned->object); return;
+static void release_vector(void *object) {
+    const N_Vector vector = object;
+    if (context_of(vector)->threads > 1) {
+        N_VDestroy_OpenMP(vector);
+    } else {
+        N_VDestroy_Serial(vector);
     }
 }
 
-void *sundials_context_own(struct sundials_context *context, enum sundials_owned_kind kind, void *object) {
-    // the place was requested before the object: a lack of memory loses no object
-    struct sundials_owned *const owned = context->next;
-    *owned = (struct sundials_owned){kind, arena_take(context->arena, object)};
-    arena_defer(context->arena, release_owned, owned);
-    NEW(context->arena, context->next, 1);
-    return object;
+// the arena releases all vectors
+static void keep(N_Vector vector) {
+    (void)vector;
 }
 
 static N_Vector clone(N_Vector vector) {
@@ -142,12 +116,31 @@ N_Vector sundials_context_vector(struct sundials_context *context, double *value
     }
     vector->ops->nvwrmsnorm = norm;
     vector->ops->nvwrmsnormmask = masked_norm;
-    return sundials_context_own(context, OWNED_VECTOR, vector);
+    return sundials_own(arena, release_vector, vector);
 }
 
 void sundials_context_reserve(struct sundials_context *context, int n) {
     GROW(context->arena, context->spare, n);
     while (context->n_spare < n) context->spare[context->n_spare++] = sundials_context_vector(context, NULL);
+}
+
+// ---- the context and its objects
+
+void *sundials_own(struct arena *arena, void (*release)(void *object), void *object) {
+    arena_defer(arena, release, arena_take(arena, object));
+    return object;
+}
+
+void sundials_release_kinsol(void *kinsol) {
+    KINFree(&kinsol);
+}
+
+void sundials_release_matrix(void *matrix) {
+    SUNMatDestroy(matrix);
+}
+
+static void release_context(void *context) {
+    SUNContext_Free(context);
 }
 
 void sundials_context_create(struct sundials_context *context, struct arena *arena, int n, int threads,
@@ -156,9 +149,8 @@ void sundials_context_create(struct sundials_context *context, struct arena *are
                                          .n = n,
                                          .threads = parallel_threads(threads, n, n, PARALLEL_ELEMENTS),
                                          .failure = failure};
-    NEW(context->arena, context->next, 1);
     if (SUNContext_Create(SUN_COMM_NULL, &context->context) != SUN_SUCCESS) arena_lack(arena, 0);
-    sundials_context_own(context, OWNED_CONTEXT, &context->context);
+    sundials_own(context->arena, release_context, &context->context);
     // no logger, because a logger prints warnings
     if (SUNContext_SetLogger(context->context, NULL) != SUN_SUCCESS ||
         SUNContext_ClearErrHandlers(context->context) != SUN_SUCCESS ||
@@ -168,7 +160,18 @@ void sundials_context_create(struct sundials_context *context, struct arena *are
 }
 
 void sundials_context_message(SUNDIALS_ERROR_ARGUMENTS) {
-    const enum status *const failure = data;
+    enum status *const failure = data;
     // drop warnings: relevant failures also return a code
-    if (code < 0 && *failure == STATUS_OK) status_fail(STATUS_SOLVER, "%s (%s)", text, function);
+    if (code >= 0 || *failure != STATUS_OK) return;
+    // all packages use these words where an allocation has failed, each with a code of its own
+    if (strstr(text, "memory request failed")) {
+        *failure = status_fail(STATUS_MEMORY, "out of memory: SUNDIALS (%s)", function);
+    } else {
+        status_fail(STATUS_SOLVER, "%s (%s)", text, function);
+    }
+}
+
+enum status sundials_context_failed(const struct sundials_context *context, const char *package) {
+    if (*context->failure != STATUS_OK) return *context->failure;
+    return status_fail(STATUS_SOLVER, "%s cannot be set up: %s", package, status_message());
 }

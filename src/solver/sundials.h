@@ -87,11 +87,10 @@ typedef int SUNErrCode;
 struct sundials_context {
     SUNContext context;
     struct arena *arena; /* of the context and all vectors, also of clones by SUNDIALS; freed after later objects */
-    N_Vector *spare;     /* vectors for the next clones, so that no clone inside SUNDIALS requests memory */
+    N_Vector *spare;     /* vectors for the next clones */
     int n_spare;
-    struct sundials_owned *next; /* place for the next object */
-    int n, threads;              /* of every vector: number of values, threads of an operation */
-    enum status *failure;        /* status of the last callback; owned by the caller */
+    int n, threads;       /* of every vector: number of values, threads of an operation */
+    enum status *failure; /* status of the last callback; owned by the caller */
 };
 
 /* Create a context for vectors of n values. Threads share the operations on long vectors; the bits of each value are
@@ -101,30 +100,24 @@ struct sundials_context {
 void sundials_context_create(struct sundials_context *context, struct arena *arena, int n, int threads,
                              enum status *failure);
 
-/* Prepare n clones: a jump out of a function of SUNDIALS would lose the memory of that function. */
+/* Prepare n clones, so that no clone inside SUNDIALS requests memory. SUNDIALS writes through the NULL of a clone that
+ * failed (N_VClone of 6.4.1), and a jump out of its functions would lose what they have allocated. */
 void sundials_context_reserve(struct sundials_context *context, int n);
 
-/* Release an object with the arena of the context, before older objects. object NULL is a lack of memory. Returns the
- * object; the two CUSTOM kinds are empty objects with our operations. */
-enum sundials_owned_kind {
-    OWNED_CONTEXT,
-    OWNED_VECTOR,
-    OWNED_MATRIX,
-    OWNED_LINEAR,
-    OWNED_CUSTOM_LINEAR,
-    OWNED_CUSTOM_NEWTON,
-    OWNED_TABLEAU,
-    OWNED_ARKODE,
-    OWNED_IDA,
-    OWNED_KINSOL
-};
-void *sundials_context_own(struct sundials_context *context, enum sundials_owned_kind kind, void *object);
+/* Release an object with the arena, before older objects. object NULL is a lack of memory. Returns the object. */
+void *sundials_own(struct arena *arena, void (*release)(void *object), void *object);
+void sundials_release_kinsol(void *kinsol);
+void sundials_release_matrix(void *matrix);
 
 /* Create a vector on an array of the caller, or, if values is NULL, of zeros. */
 N_Vector sundials_context_vector(struct sundials_context *context, double *values);
 
 /* Error handler for SUNDIALS; data: status of the last callback. The message of a failed callback is the cause and
- * stays; otherwise the text of SUNDIALS becomes the message of this thread. */
+ * stays; otherwise the text of SUNDIALS becomes the message of this thread. Where SUNDIALS lacks memory, the status
+ * becomes STATUS_MEMORY. */
 void sundials_context_message(SUNDIALS_ERROR_ARGUMENTS);
+
+/* Fail because a package could not be set up: with STATUS_MEMORY, or else with STATUS_SOLVER. */
+enum status sundials_context_failed(const struct sundials_context *context, const char *package);
 
 #endif

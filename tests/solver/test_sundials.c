@@ -1,7 +1,9 @@
 /* test_sundials.c: The threaded vectors have the bits of the serial vectors of SUNDIALS with any number of threads, a
- * clone without memory is reported, and messages of SUNDIALS arrive. */
+ * lack of memory of SUNDIALS is told, and its messages arrive. */
+#include <limits.h>
 #include <math.h>
 #include <string.h>
+#include <sys/resource.h>
 
 #include "base/parallel.h"
 #include "school.h"
@@ -122,6 +124,36 @@ TEST(errors_of_a_package_become_messages) {
     both.failure = status_fail(STATUS_CASE, "the cause");
     assert_int_equal(IDASetMaxOrd(ida, -1), IDA_ILL_INPUT);
     assert_string_equal(status_message(), "the cause");
+    IDAFree(&ida);
+    clear(&both);
+}
+
+static int no_root(sunrealtype t, N_Vector y, N_Vector yp, sunrealtype *value, void *data) {
+    (void)t, (void)y, (void)yp, (void)value, (void)data;
+    return 0;
+}
+
+TEST(a_lack_of_memory_of_sundials_is_told_from_other_errors) {
+    struct both both;
+    create(&both, 1);
+    void *ida = IDACreate(both.context.context);
+    assert_int_equal(IDASetErrHandlerFn(ida, sundials_context_message, &both.failure), SUN_SUCCESS);
+    assert_int_equal(IDASetMaxOrd(ida, -1), IDA_ILL_INPUT);
+    assert_int_equal(sundials_context_failed(&both.context, "IDA"), STATUS_SOLVER);
+    assert_non_null(strstr(status_message(), "IDA cannot be set up: "));
+#ifndef __SANITIZE_ADDRESS__  // which ends the program instead
+    // arrays of 16 GB, with a limit of 4 GB
+    struct rlimit limit, small;
+    getrlimit(RLIMIT_AS, &limit);
+    small = limit;
+    small.rlim_cur = (rlim_t)1 << 32;
+    assert_int_equal(setrlimit(RLIMIT_AS, &small), 0);
+    const int code = IDARootInit(ida, INT_MAX, no_root);
+    assert_int_equal(setrlimit(RLIMIT_AS, &limit), 0);
+    assert_int_equal(code, IDA_MEM_FAIL);
+    assert_int_equal(sundials_context_failed(&both.context, "IDA"), STATUS_MEMORY);
+    assert_string_equal(status_message(), "out of memory: SUNDIALS (IDARootInit)");
+#endif
     IDAFree(&ida);
     clear(&both);
 }
