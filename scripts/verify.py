@@ -50,42 +50,42 @@ Theodorsen's lift and moment, Garrick's thrust, Wagner's start, Wu's series for 
 for elastic plates clamped at the nose. These solvers share no code with the program. This section compares the solvers
 with published values, with limits in closed form, with each other, and with numbers of another program."""),
     "rod": ("Rod alone", """\
-The elastic body of model.md 1 to 3 without fluid: large deflections, vibrations, and the conservation laws of an isolated
-body."""),
+This section tests the elastic body of model.md 1 to 3 without fluid, by large deflections, by vibrations, and by the
+conservation laws of an isolated body."""),
     "force": ("Force of the fluid", """\
-The reactive force of model.md 9 in still fluid: the large smoothing of free vortices makes their velocity negligible,
-bodies have no drag and no damping. A fish gains nothing from fluid at rest with any gait; the energy of body and fluid
-together is the work of the muscle; a reversed wave returns the body; plates agree with analytic results and with
-Lighthill's thrust."""),
+This section tests the reactive force of model.md 9 in still fluid. A large smoothing of the free vortices makes their
+velocity negligible, and bodies have no drag and no damping. A fish must then gain nothing from fluid at rest with any gait,
+the energy of body and fluid together must be the work of the muscle, and a reversed wave must return the body. Plates must
+agree with analytic results and with Lighthill's thrust."""),
     "sheet": ("Sheet alone", """\
-The bound vortex sheet of model.md 6 on bodies with prescribed motion: the strength against closed forms, and the
-convergence of both choices of control points. On bent bodies the smooth curve is compared with the polygon (chebyshev and
+This section tests the bound vortex sheet of model.md 6 on bodies with prescribed motion. It compares the strength with
+closed forms, and shows how both choices of control points converge. On bent bodies the smooth curve is compared with the polygon (chebyshev and
 midpoint are the control points of the polygon)."""),
     "wake": ("Wake alone", """\
-Free vortices without a body, model.md 8: translation, rotation, the growth of a perturbed row, and the invariants of an
-isolated wake."""),
+This section tests free vortices without a body (model.md 8): how they translate and rotate, how a perturbed row grows, and
+the invariants of an isolated wake."""),
     "plate": ("Plate in a wake", """\
-Sheet and wake together, on a plate with prescribed motion: the impulsive start (Wagner 1925) and harmonic heaving
-(Theodorsen 1935)."""),
+Here sheet and wake act together, on a plate that starts impulsively (Wagner 1925) or heaves harmonically (Theodorsen
+1935)."""),
     "school": ("Everything", """\
-A school of three different fish near each other (lengths 1, 0.8 and 0.9, different beats and stiffness), one fish 15
-degrees off the desired heading: all terms of the model at once. There is no closed solution. Runs are compared with finer
+In a school of three different fish near each other (lengths 1, 0.8 and 0.9, different beats and stiffness), of which one is
+15 degrees off its desired heading, all terms of the model act at once. There is no closed solution, so runs are compared with finer
 runs, as a norm over all fish, at t = 1.2 s; the *free sheet* is the position, at that time, of the piece of every wake
 shed at 0.6 s. This is a fixed Lagrangian label: a vortex released at t_n represents circulation shed around t_n - Dt/2, so
 the position is interpolated along the wake. The vortex released at 0.6 s represents different fluid for every Dt.
 
-Unusual bounds: BDF of order p that keeps the error of one step below rtol has a global error of rtol^(p/(p+1)), a slope of
-2/3 at order 2 and 5/6 at order 5. The default body has order 3/2 in N at the nose: the thickness of an edge is the sum of
-two radii, the trapezoidal rule on a profile that rises like a square root. Mean thicknesses make that error 17 times
-smaller; the remaining error has an order near 3/2 too, of unknown cause.
+Some bounds need an explanation. BDF of order p that keeps the error of one step below rtol has a global error of rtol^(p/(p+1)), a slope of
+2/3 at order 2 and 5/6 at order 5. The default body has order 3/2 in N at the nose, because the thickness of an edge is the
+sum of two radii, which is the trapezoidal rule on a profile that rises like a square root. Mean thicknesses make that error
+17 times smaller; the remaining error has an order near 3/2 too, of unknown cause.
 
 The order in N of circulation has no bound: the sequence of this section (N up to 65) is regular, and a finer sequence
 does not continue the order. In the limit 3/2 would be expected of a polygon, whose last edge has the direction of the body
 half an edge ahead of the tail; this is a conjecture. In M only shed circulation is checked on the default fish: the
 changes of nose and wake are smaller and irregular."""),
     "interval": ("Shedding interval of one fish", """\
-One soft fish (E = 1e5 Pa, N = 7), from rest and from 1 m/s, with a force that depends on its own wake: the pressure of the
-bound sheet with *sheet*, the published force with *continuous*. All other keys have defaults. The run ends at 1.5 s;
+One soft fish (E = 1e5 Pa, N = 7) swims from rest and from 1 m/s, with a force that depends on its own wake: the pressure of
+the bound sheet with *sheet*, the published force with *continuous*. All other keys have defaults. The run ends at 1.5 s, and
 vortices decay from an age of 0.8 s to 1 s, so a part of the wake is lost, which Kelvin's theorem retains or drops
 (`removed_circulation`). The interval is halved from 0.02 s to 0.00125 s. The sheet points increase with the refinement, M
 - 1 as Dt^(-1/2) from 33 to 129, because below U Dt/L = (3.2/(M - 1))^2 the error depends on the spacing of the bound sheet;
@@ -96,22 +96,22 @@ order is the slope of the changes over the interval; the table also has the erro
 to the correct wake with order 1.0 to 1.4, the order of the spacing of the sheet. The errors at 0.01 s are 4e-5 m in the
 positions of a fish with initial speed, and 1.5e-4 to 2e-4 m from rest."""),
     "symmetry": ("Symmetries", """\
-Invariance of the motion: the same school shifted, rotated, mirrored, in a moving frame, listed in another order, on two
-threads, written at other times, with companions too far away to matter. Rows without a name use the article's model;
+The motion must not change if the same school is shifted, rotated, mirrored, put into a moving frame, listed in another order,
+computed on two threads, written at other times, or has companions too far away to matter. Rows without a name use the article's model;
 *default model* has the free sheet and the reactive force of the defaults. With identical steps of the integrator the
 results agree to round-off, otherwise to the tolerance. The first error estimates after a smooth start of the muscle are
 round-off, so a change of view changes the first steps; with a sudden start the steps are identical."""),
     "start": ("Start and index", """\
-The consistent start of model.md 10: the algebraic equations determine the algebraic unknowns, and the start satisfies
-all equations."""),
+This section tests the consistent start of model.md 10. The algebraic equations determine the algebraic unknowns, and the
+start satisfies all equations."""),
     "energy": ("Energy", """\
-The energy balance of model.md 13 over long runs: energy of the body less the initial energy less all work on the body. And
-a default fish (with 7 nodes) over one beat: the work of the muscle equals damping, drag and wake; the speed in the long
-run is independent of the initial speed."""),
+Over long runs the energy balance of model.md 13, which is the energy of the body less the initial energy less all work on the
+body, must stay small. Over one beat of a default fish (with 7 nodes) the work of the muscle must equal damping, drag and wake,
+and its speed in the long run must be independent of the initial speed."""),
     "momentum": ("Momentum", """\
-The momentum balance of model.md 13, of swimmers with `force: pressure`: bodies and wakes have one smoothing for each other
-in both directions (model.md 8), so the fluid receives the momentum of the bodies. The remaining errors are the errors of
-the interval, mostly in the first beat, during which a fish from rest swims less than a hundredth of a length per interval.
+Swimmers with `force: pressure` must satisfy the momentum balance of model.md 13. Bodies and wakes have one smoothing for each
+other in both directions (model.md 8), so the fluid receives the momentum of the bodies. The remaining errors are those of the
+interval, mostly in the first beat, during which a fish from rest swims less than a hundredth of a length per interval.
 *Momentum lost* is the balance over the largest momentum of the bodies. A plate with a sudden start across its axis loses
 some per cent in the first interval (model.md 13) and nothing after."""),
     "fish": ("The default fish", """\
@@ -120,25 +120,25 @@ on the reactive force, and of the frequency, with the modulus proportional to th
 limit: damping acts on the strain, and the power of the muscle follows from the balance of momentum (doc/model.md, sections
 3 and 13; doc/numerics.md, section 9)."""),
     "control": ("Control", """\
-Heading control with feedforward, and course control, on bodies from soft to stiff: the same run with the implicit and with
-an explicit method. The bound is a little more than twice the effect of the tolerance without control (law none). With the
+Heading control with feedforward and course control, on bodies from soft to stiff, must give the same run with the implicit and
+with an explicit method. The bound is a little more than twice the effect of the tolerance without control (law none). With the
 moving mean of the feedforward there is no algebraic loop, and the bias of the stiffest body changes as smoothly as the bias
 of the softest body. A default fish swims through waypoints, another holds a course in the wake of a leader."""),
     "pressure": ("Pressure", """\
-Forces of `force: pressure`, model.md 15, against the linear theory of thin foils: rigid plates that heave and pitch,
-sudden starts, and plates that swim by heave. The settings are the defaults with 65 sheet points and 300 events a period.
+This section compares the forces of `force: pressure` (model.md 15) with the linear theory of thin foils, for rigid plates that
+heave and pitch, for sudden starts, and for plates that swim by heave. The settings are the defaults with 65 sheet points and 300 events a period.
 Other tests show that no run fails: 36 random schools of plates and fish in `make test` (TEST=pressure_cases), 500 in `make
 soak`."""),
     "elastic": ("Elastic plates", """\
-`force: pressure` on plates with a clamped nose in a stream, rtol 1e-5, U Dt = 0.01 L, with the whole wake. *Flutter*:
-growth rates and frequencies come from `shoal steady`, eigenvalues of the linearised equations; secants from the
+Plates with `force: pressure` are clamped at the nose in a stream, with rtol 1e-5, U Dt = 0.01 L and the whole wake. *Flutter*:
+growth rates and frequencies are the eigenvalues of the linearised equations, from `shoal steady`; secants from the
 theoretical threshold give the U* of zero growth; `wake.taper` is 0.8, as the sheet is straight. The errors of N and (N +
 1)/2 nodes show the convergence. *Heaving nose*: amplitude 0.002 L, the last of 6 or 10 periods (5 in the figures)."""),
     "steady": ("Steady states", """\
-Steady states, doc/steady.md: results of `shoal steady` after twelve to twenty beats against runs of two hundred beats, and
-the multiplier against the decay of the run."""),
+This section compares results of `shoal steady` (doc/steady.md) after twelve to twenty beats with runs of two hundred beats,
+and the multiplier with the decay of the run."""),
     "static": ("Equilibria", """\
-Bodies without a beat, doc/steady.md: results of `shoal steady` for a stiff plate; for a flexible plate (thin airfoils and
+For bodies without a beat (doc/steady.md) this section has the results of `shoal steady` for a stiff plate; for a flexible plate (thin airfoils and
 Galerkin's method, an independent solver); for a plate with the clamp downstream, which the reactive force of slender
 bodies buckles as a column (Euler); and for a plate across the stream with drag of the edges alone, an elastica: the drag
 over the drag of a stiff plate falls with the Cauchy number, in the limit like U^(4/3) over U^2, with Vogel's exponent -2/3
@@ -174,18 +174,18 @@ unstable position in each wavelength, at any amplitude. The plates of Fang et al
 program (github.com/FangMath/VortexSheetSchooling, parameter.m): length 2, heave 0.2, mass 2, drag 0.04 U^1.5; the program
 lists the speed 13.25 of a single plate, in agreement with Garrick's theory."""),
     "coupled": ("Coupled bodies", """\
-Free bodies in the moving fluid, with `force: pressure`: the added mass of a plate; the impulse of a sudden stream of 0.1
+This section has free bodies in the moving fluid, with `force: pressure`: the added mass of a plate; the impulse of a sudden stream of 0.1
 across a plate, with continuous positions and momenta and a jump of the velocities; and fish that swim by a wave of
 curvature 5 (0.2 + 0.8 s) sin(2 pi (t - s)) (mass 0.1 rho L, E I = rho f^2 L^5, friction 0.0133 U^1.5), alone and one behind
 the other. The speeds are compared with a prototype of the method, another program with another body (a polygon) and
 another solver."""),
     "depth": ("Finite depth", """\
-`pressure.span: finite` (model.md 18): sheets of vortex rings, between Lighthill's slender body and two dimensions: lift
-of wings, added mass, thrust and power of a heaving plate; the fluid receives the momentum of fish of one and of two depths;
-the wake of a slow slender fish stays whole."""),
+With `pressure.span: finite` (model.md 18) the sheets consist of vortex rings, between Lighthill's slender body and two
+dimensions. This section tests the lift of wings, and the added mass, thrust and power of a heaving plate. The fluid must
+receive the momentum of fish of one and of two depths, and the wake of a slow slender fish must stay whole."""),
     "encounters": ("Encounters", """\
-Bodies in an unsteady inflow, model.md 8. *Gusts*: a fixed plate in a gust that travels with the stream, with full suction,
-U Dt = 0.005 to 0.02 L and 65 sheet points. The lift in a sine gust is Sears' function; the pressure of Sears' solution has
+Here bodies meet an unsteady inflow (model.md 8). *Gusts*: a fixed plate is in a gust that travels with the stream, with full
+suction, U Dt = 0.005 to 0.02 L and 65 sheet points. The lift in a sine gust is Sears' function; the pressure of Sears' solution has
 the form of an incidence, so the suction, the only force along the plate, is the square of the lift. The lift in a step
 gust is Kuessner's function; s is the way of the middle of the step from the nose, in half lengths, and the step rises over
 a tenth of the length. *Vortex streets* (`wake.street`): the speed of a street in still fluid is von Karman's; the ends of
@@ -194,37 +194,37 @@ the odd harmonics of the spacing; the suction of Sears' pressure accelerates the
 free in all directions heaves and pitches in a weak street as the equations of a rigid body with Wagner's lift, integrated by
 another program."""),
     "skin": ("Pressure on the skin", """\
-Pressure on both sides of a plate at `sensors` (model.md 15): beside a vortex that passes, against the complex potential
-of the vortices of the run outside the circle of the plate; held in an oscillating stream, against linear theory, whose
-added-mass pressure is elliptic. Friction on both sides by Thwaites' method (model.md 9) against Blasius and the
-Navier-Stokes solutions of the last section."""),
+This section tests the pressure on both sides of a plate at `sensors` (model.md 15). Beside a vortex that passes it is compared
+with the complex potential of the vortices of the run outside the circle of the plate, and in an oscillating stream with linear
+theory, whose added-mass pressure is elliptic. The friction on both sides by Thwaites' method (model.md 9) is compared with
+Blasius and with the Navier-Stokes solutions of the last section."""),
     "walls": ("Walls", """\
-Bodies beside straight walls, model.md 17: a fish beside a wall moves like a fish beside the mirror image, a plate between
+For bodies beside straight walls (model.md 17) this section shows that a fish beside a wall moves like a fish beside the mirror image, a plate between
 two walls has the circulation of thin-foil theory with all images, and a fish that swims against a wall loses no energy to
 the wall. A vortex pair (`wake.vortices`) parts at a wall as in potential flow."""),
     "validation": ("Against experiment and Navier-Stokes", """\
-`force: pressure` with the limit of suction and the boundary-layer friction (model.md 9 and 15) against real fluids: the
-cases foil_anderson, foil_heave and swimmer_navier_stokes of cases/, with other keys at defaults. The references are in
-tests/verify/data with their sources. *Error* is the ratio of the result to the reference, and it is the validation.
-Two foils (school_navier_stokes.csv) are compared by what the other foil changes; side by side the bound is 15 % and the
-error of the source. Reasons of the differences:
+This section compares `force: pressure`, with the limit of suction and the friction of the boundary layer (model.md 9 and 15),
+with real fluids. It runs foil_anderson, foil_heave and swimmer_navier_stokes of cases/, with other keys at their defaults. The
+references are in tests/verify/data with their sources. *Error* is the ratio of the result to the reference, and it is the validation.
+Two foils (school_navier_stokes.csv) are compared by what the other foil changes; side by side the bound is 15 % plus the
+error of the source. The differences have these reasons:
 
-* *Foil, thrust.* 3 to 13 % too small for St from 0.2 to 0.5: the sheet has no thickness, which increases the thrust in the
+* *Foil, thrust.* It is 3 to 13 % too small for St from 0.2 to 0.5, because the sheet has no thickness, which increases the thrust in the
   inviscid theory of the same article (dashed), and the friction of a steady boundary layer takes 3 to 6 %. At psi = 90 that
   theory is below the experiment too: leading-edge vortices join the trailing-edge vortices, in contrast to attached flow.
 * *Foil, St = 0.1.* The thrust is the small difference of suction, pressure and friction: with full suction the thrust is
   1.4 times the experiment at psi = 90, and the limit removes half of the excess.
-* *Foil, power.* Up to 16 % too large at St = 0.5. At psi = 75 the flow separates at the nose for a fifth of the period; the
+* *Foil, power.* It is up to 16 % too large at St = 0.5. At psi = 75 the flow separates at the nose for a fifth of the period; the
   limit changes the suction, but not the lift and its power. The cause of the 9 % at psi = 90 is not known.
 * *Heave, thrust.* The remaining suction is about as large as the friction, and depends on the critical A_0 (0.01 in A_0 is
-  0.017 in the coefficient). The two references at Re 4000 differ from each other by more than from the program: other
-  noses and tails, and other grids.
-* *Heave, lift and power.* Up to a quarter too large: the boundary layer displaces the flow at the trailing edge (round, of
+  0.017 in the coefficient). The two references at Re 4000, with other noses and tails and other grids, differ from each other
+  by more than from the program.
+* *Heave, lift and power.* They are up to a quarter too large, because the boundary layer displaces the flow at the trailing edge (round, of
   the ellipse), so the Kutta condition holds only in part, and the leading-edge vortex takes circulation.
-* *Swimmer, speed.* 8 % above the middle of an extrapolation with a range of 12 %: the friction is the friction of a steady
+* *Swimmer, speed.* It is 8 % above the middle of an extrapolation with a range of 12 %. The friction is that of a steady
   boundary layer with factors for wave and thickness (without the factors the swimmer is 22 % too fast), and has no history.
-* *Swimmer, power and forces.* 13 % less power, as the body is a sheet: thickness, 8 % of the length, and boundary layer
-  displace additional fluid. The lateral force is a sum of forces that nearly cancel along the body, and the vortices of
+* *Swimmer, power and forces.* The power is 13 % smaller, because the body is a sheet, while in the fluid its thickness of 8 %
+  of the length and the boundary layer displace additional water. The lateral force is a sum of forces that nearly cancel along the body, and the vortices of
   the wake balance a smaller friction.
 * *Trout.* The gait is a regression over fish of 0.055 to 0.56 m, without the envelope of the body and the shape of its
   depth. The stride of slow trout is less than computed by up to a quarter."""),
