@@ -74,14 +74,8 @@ void study_folder_set_reason(struct arena *arena, const char *folder, int member
     }
 
     // ignore a full disk: the result file itself contains the status "running" or "failed"
-    struct durable_part part = {.descriptor = -1};
-    const int code = durable_begin(&part, path, 0666);
-    if (code == 0 && durable_write(part.descriptor, reason, strlen(reason)) == 0 &&
-        durable_write(part.descriptor, "\n", 1) == 0) {
-        durable_publish(&part, true);
-    }
-    durable_end(&part);
-    if (code == ENOMEM) arena_lack(arena, 0);
+    const char *const line = arena_text(arena, "%s\n", reason);
+    durable_replace(path, NULL, line, strlen(line));
 }
 
 enum status study_folder_read_members(struct arena *arena, struct member_file **members,
