@@ -46,7 +46,6 @@ static enum status study_options_from(const struct request *request, const char 
     *options = (struct study_options){.folder = folder,
                                       .command = request->command_line,
                                       .from = request->from,
-                                      .last = -1,
                                       .force = request->force,
                                       .progress = request->quiet ? NULL : say_progress_study,
                                       .data = progress,
@@ -57,6 +56,7 @@ static enum status study_options_from(const struct request *request, const char 
     if (!request->members) return STATUS_OK;
 
     // one member, "3", or a range of members, "3-7"
+    options->is_part = true;
     int length = 0, *const first = &options->first, *const last = &options->last;
     const int n = sscanf(request->members, "%9d-%9d%n", first, last, &length);
     if (n == 1 && sscanf(request->members, "%*d%n", &length) == 0) *last = *first;
@@ -95,7 +95,7 @@ static enum status run_study(const struct case_values *values, const struct requ
     say_progress_end(&progress);
     TRY(status);
 
-    if (options.last < 0) {
+    if (!options.is_part) {
         if (!request->quiet) say_line(stdout, "%s\n", folder);
         struct report report;
         TRY(report_begin(&report));

@@ -39,6 +39,7 @@ struct initial_conditions {
     /* unknowns, rates of zero, kinds, scales of the unknowns and of the equations in their rows, and their inverses
      * (n) */
     double *y, *zero, *kind, *scale, *inverse_scale;
+    bool has_kinds;      /* the kinds are those of a mode */
     double *value;       /* residual of the last evaluation                                             (n) */
     double *start;       /* initial guess and solution of KINSOL                                        (n) */
     enum status failure; /* of the last callback */
@@ -93,7 +94,6 @@ enum status initial_conditions_create(struct arena *arena, struct initial_condit
         const bool is_loose = is_acceleration && at->second > at->vx;
         c->scale[i] = residual_scale(residual->school, i);
         c->inverse_scale[i] = 1 / ((is_loose ? loose : 1) * c->scale[i]);
-        c->kind[i] = -1;  // unknown
     }
 
     c->jacobian = jacobian_create(arena, residual->school);
@@ -166,7 +166,8 @@ enum status initial_conditions_solve(struct initial_conditions *c, const struct 
     // Another mode may have other differential unknowns than the last solution had: mask their rows.
     const struct school *const school = c->residual->school;
     residual_kinds(c->residual, c->mode, c->value);
-    if (memcmp(c->value, c->kind, (size_t)c->n * sizeof *c->kind) != 0) {
+    if (!c->has_kinds || memcmp(c->value, c->kind, (size_t)c->n * sizeof *c->kind) != 0) {
+        c->has_kinds = true;
         memcpy(c->kind, c->value, (size_t)c->n * sizeof *c->kind);
         residual_mask(c->residual, c->jacobian);
         for (int f = 0; f < school->n_fish; f++) {

@@ -2,6 +2,7 @@
 #include "state/impulse.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 #include "wake/stretch.h"
 
@@ -18,12 +19,20 @@ void impulse_add_stretch(struct impulse_moments *sum, double circulation, const 
     impulse_add(sum, circulation / 2, other[0], other[1]);
 }
 
-/* Besides the fractions of an interval: without decay; no wake. */
-static const double undecayed = -1, none = -2;
+/* Which strengths a wake has: none, those without decay, or those that are left at the fraction q of the interval. */
+struct strengths {
+    bool exist, decay;
+    double q;
+};
+static const struct strengths nothing = {.exist = false}, undecayed = {.exist = true};
+
+static struct strengths strengths_at(double q) {
+    return (struct strengths){.exist = true, .decay = true, .q = q};
+}
 
 /* The markers around a stretch at one time, at index i % STRETCH_MARKERS: a pass from the oldest stretch to the newest
- * evaluates each marker once. The parts of labels and markers that remain are at the fractions q[0] and, of a change,
- * q[1] of the interval; without decay they are 1. */
+ * evaluates each marker once. The parts of labels and markers that remain are those of the strengths of[0] and, for a
+ * change, of[1]; without decay they are 1. */
 struct window {
     int next; /* the first marker that is not in the window yet */
     double label[STRETCH_MARKERS], place[STRETCH_MARKERS][2];
@@ -31,25 +40,25 @@ struct window {
 };
 
 static void window_move(struct window *window, const struct wake *wake, const struct school *school, int end, double t,
-                        double tau, const double q[2]) {
+                        double tau, const struct strengths of[2]) {
     for (; window->next < end; window->next++) {
         const int i = window->next, k = i % STRETCH_MARKERS;
         window->label[k] = wake_label(wake, i, school->interval, tau);
         wake_marker(wake, i, school->interval, tau, window->place[k]);
-        for (int side = 0; side < 2 && q[side] > none; side++) {
-            const bool decays = q[side] >= 0;
-            window->part_of_label[side][k] = decays ? wake_part_of_label(wake, school, t, q[side], i) : 1;
-            window->part_of_marker[side][k] = decays ? wake_part_of_marker(wake, school, t, q[side], i) : 1;
+        for (int side = 0; side < 2 && of[side].exist; side++) {
+            const double q = of[side].q;
+            window->part_of_label[side][k] = of[side].decay ? wake_part_of_label(wake, school, t, q, i) : 1;
+            window->part_of_marker[side][k] = of[side].decay ? wake_part_of_marker(wake, school, t, q, i) : 1;
         }
     }
 }
 
 /* The circulations that stretch j gives to its markers, with what remains on one side of the window. */
 static void stretch_circulations(const struct window *window, const struct wake *wake, const struct school *school,
-                                 int j, const struct stretch_form *form, double t, double q, int side,
+                                 int j, const struct stretch_form *form, double t, struct strengths of, int side,
                                  double sum[STRETCH_MARKERS]) {
     const bool is_young = j >= wake->n_old;
-    const double part_of_stretch = is_young && q >= 0 ? wake_part_of_stretch(wake, school, t, q, j) : 1;
+    const double part_of_stretch = is_young && of.decay ? wake_part_of_stretch(wake, school, t, of.q, j) : 1;
     double label[STRETCH_MARKERS];
     for (int b = 0; b < form->n; b++) {
         const int k = (form->first + b) % STRETCH_MARKERS;
@@ -63,11 +72,10 @@ static void stretch_circulations(const struct window *window, const struct wake 
     }
 }
 
-/* Add factor times a wake at the time t + tau: the strengths at the fraction q of the interval, less the strengths at
- * less_q. */
+/* Add factor times a wake at the time t + tau, with some strengths less others. */
 static void impulse_add_wake(struct impulse_moments *sum, const struct wake *wake, const struct school *school,
-                             double t, double tau, double q, double less_q, double factor) {
-    const bool is_change = less_q > none;
+                             double t, double tau, struct strengths of, struct strengths less_of, double factor) {
+    const bool is_change = less_of.exist;
     struct stretch_form form = {.n = 0};
     struct window window = {.next = 0};
     for (int j = 0; j < wake_n_sources(wake); j++) {
@@ -76,8 +84,8 @@ static void impulse_add_wake(struct impulse_moments *sum, const struct wake *wak
         if (is_change && !(wake_strength_within(school, t - wake->birth[oldest], 1) < 1)) return;
 
         if (!wake->has_markers) {
-            const double part = q >= 0 ? wake_part_of_label(wake, school, t, q, j) : 1;
-            const double less = less_q >= 0 ? wake_part_of_label(wake, school, t, less_q, j) : 0;
+            const double part = of.decay ? wake_part_of_label(wake, school, t, of.q, j) : 1;
+            const double less = less_of.decay ? wake_part_of_label(wake, school, t, less_of.q, j) : 0;
             double at[2];
             wake_marker(wake, j, school->interval, tau, at);
             impulse_add(sum, factor * (part - less) * wake->circulation[j], at[0], at[1]);
@@ -86,9 +94,9 @@ static void impulse_add_wake(struct impulse_moments *sum, const struct wake *wak
 
         double strength[STRETCH_MARKERS], less[STRETCH_MARKERS] = {0};
         stretch_set_form(&form, wake, school, j);
-        window_move(&window, wake, school, form.first + form.n, t, tau, (const double[]){q, less_q});
-        stretch_circulations(&window, wake, school, j, &form, t, q, 0, strength);
-        if (is_change) stretch_circulations(&window, wake, school, j, &form, t, less_q, 1, less);
+        window_move(&window, wake, school, form.first + form.n, t, tau, (const struct strengths[]){of, less_of});
+        stretch_circulations(&window, wake, school, j, &form, t, of, 0, strength);
+        if (is_change) stretch_circulations(&window, wake, school, j, &form, t, less_of, 1, less);
         for (int a = 0; a < form.n; a++) {
             const double *const at = window.place[(form.first + a) % STRETCH_MARKERS];
             impulse_add(sum, factor * (strength[a] - less[a]), at[0], at[1]);
@@ -98,14 +106,13 @@ static void impulse_add_wake(struct impulse_moments *sum, const struct wake *wak
 
 struct impulse_moments impulse_of_wake(const struct wake *wake, const struct school *school, double t, double tau) {
     struct impulse_moments sum = {0};
-    impulse_add_wake(&sum, wake, school, t, tau, tau / school->interval, none, 1);
+    impulse_add_wake(&sum, wake, school, t, tau, strengths_at(tau / school->interval), nothing, 1);
     return sum;
 }
 
 double impulse_lost_circulation(const struct wake *wake, const struct school *school, double t, double tau) {
     struct impulse_moments lost = {0};
-    const double q = tau / school->interval;
-    impulse_add_wake(&lost, wake, school, t, tau, undecayed, q, 1);
+    impulse_add_wake(&lost, wake, school, t, tau, undecayed, strengths_at(tau / school->interval), 1);
     return wake->removed + lost.circulation;
 }
 
@@ -147,8 +154,9 @@ void impulse_fade(const struct school *school, struct state *state, int f) {
     struct impulse_moments lost = {0};
 
     // lost moments: mean of the positions at the beginning and at the end of the interval
-    impulse_add_wake(&lost, wake, school, state->t, 0, 0, 1, 0.5);
-    impulse_add_wake(&lost, wake, school, state->t, school->interval, 0, 1, 0.5);
+    const struct strengths first = strengths_at(0), last = strengths_at(1);
+    impulse_add_wake(&lost, wake, school, state->t, 0, first, last, 0.5);
+    impulse_add_wake(&lost, wake, school, state->t, school->interval, first, last, 0.5);
 
     // the tail: newest marker at the beginning of the interval, node of y at the end
     const double end[2] = {state->y[fish->at.x + fish->n_nodes - 1], state->y[fish->at.y + fish->n_nodes - 1]};

@@ -265,8 +265,8 @@ static enum status run_until_all_end(struct study *study) {
 static enum status lock_members(struct study *study) {
     const struct study_options *const options = study->options;
     TRY(study_folder_create(options->folder));
-    const uint64_t n = options->last < 0 ? 0 : (uint64_t)(options->last - options->first + 1);
-    const uint64_t first = options->last < 0 ? 0 : (uint64_t)options->first;
+    const uint64_t n = options->is_part ? (uint64_t)(options->last - options->first + 1) : 0;
+    const uint64_t first = options->is_part ? (uint64_t)options->first : 0;
     study->lock_path = arena_text(study->arena, "%s/study.lock", options->folder);
 
     // another study may remove the file between opening and locking

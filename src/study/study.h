@@ -30,10 +30,11 @@ struct study_options {
     const char *command; /* command line, for the history attribute of the files */
     const char *from;    /* steady state that the first search starts from; NULL: the start of the case */
     int n_processes;     /* simultaneous processes; 0: usable processors over threads per member */
-    int first, last;     /* members to run; last -1: all */
-    int n_required;      /* the first n_required members must succeed: a failure stops the study */
-    double limit;        /* wall time after which a member counts as failed, s; 0: none */
-    bool force;          /* remove the results of another study from the folder */
+    bool is_part;        /* run only the members from first to last */
+    int first, last;
+    int n_required; /* the first n_required members must succeed: a failure stops the study */
+    double limit;   /* wall time after which a member counts as failed, s; 0: none */
+    bool force;     /* remove the results of another study from the folder */
     void (*progress)(const struct study_progress *progress, void *data); /* may be NULL */
     void *data;
     const volatile sig_atomic_t *stop; /* may be NULL */

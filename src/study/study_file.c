@@ -687,7 +687,6 @@ static enum status run_in_folder(struct arena *arena, const char *folder, const 
     const struct study_options all = {.folder = folder,
                                       .command = run->command,
                                       .n_processes = 1,
-                                      .last = -1,
                                       .n_required = COMPARE_N_REFERENCES,
                                       .limit = run->limit,
                                       .progress = run->progress,

@@ -239,8 +239,8 @@ static enum status clear_surplus(struct arena *arena, const struct case_values *
 enum status study_plan_create(struct arena *arena, struct study_plan *plan, const struct case_values *study,
                               const struct study_options *options) {
     const char *const folder = options->folder;
-    const bool is_part = options->last >= 0, force = options->force;
-    const int n = sweep_n_members(study), first = options->first, last = is_part ? options->last : n - 1;
+    const bool is_part = options->is_part, force = options->force;
+    const int n = sweep_n_members(study), first = is_part ? options->first : 0, last = is_part ? options->last : n - 1;
     *plan = (struct study_plan){.max_threads = 1};
     if (first < 0 || first > last || last >= n) {
         return status_fail(STATUS_CASE, "--members %d-%d: the study has members 0 to %d", first, last, n - 1);

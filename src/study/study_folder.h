@@ -65,7 +65,7 @@ struct study_watch {
 /* After each member of the loop: report, or fail with STATUS_STOPPED. */
 enum status study_folder_watch(struct study_watch *watch, int n_checked);
 
-/* Check all members from options->first to options->last (-1: all) and list the unfinished members. options->force:
+/* Check all members, or a part of them (options->is_part), and list the unfinished members. options->force:
  * accept results of another study in the folder, and remove such results beyond the last member. Other fields in use:
  * folder, progress, stop. Fails with STATUS_CASE (no such members, or a member is not a valid case), STATUS_FILE (the
  * folder contains results of another study) or STATUS_STOPPED. */

@@ -26,7 +26,7 @@ static int set_up(void **state) {
     assert_non_null(mkdtemp(f->folder));
     for (int m = 0; m < 3; m++) snprintf(f->member[m], sizeof f->member[m], "%s/member-%04d.nc", f->folder, m);
     assert_int_equal(case_parse(&f->study, case_text, strlen(case_text), "swimmer.yaml", NULL, 0, NULL), STATUS_OK);
-    const struct study_options options = {.folder = f->folder, .command = "test", .last = -1, .n_processes = 2};
+    const struct study_options options = {.folder = f->folder, .command = "test", .n_processes = 2};
     int n_failed;
     assert_int_equal(study_run(&f->study, &options, &n_failed), STATUS_OK);
     assert_int_equal(n_failed, 0);
@@ -56,7 +56,8 @@ static void set_attribute(const char *path, const char *name, const char *text) 
 
 static enum status create_plan(const struct fixture *f, struct study_plan *plan, const struct case_values *study,
                                int first, int last, bool force) {
-    const struct study_options options = {.folder = f->folder, .first = first, .last = last, .force = force};
+    const struct study_options options = {
+        .folder = f->folder, .is_part = last >= 0, .first = first, .last = last, .force = force};
     return study_plan_create(f->arena, plan, study, &options);
 }
 
