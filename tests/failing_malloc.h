@@ -1,4 +1,4 @@
-/* failing_malloc.h: allocations of the program that fail on demand, and a count of those that live.
+/* failing_malloc.h: lets allocations of the program fail on demand, and counts those that live.
  *
  * Include it in one file of a test: the Makefile then links every malloc of the program to __wrap_malloc. Libraries
  * keep their own. */

@@ -1,6 +1,6 @@
-/* actions.c: what a learner costs without Python: a fish that is led at every event, through include/shoal.h. Prints
- * the CPU time of one action in microseconds, the least of several episodes. tests/bench/actions.py does the same in
- * Python.
+/* actions.c: measures what a learner costs without Python, by a fish that is led at every event through
+ * include/shoal.h. It prints the CPU time of one action in microseconds, the least of several episodes.
+ * tests/bench/actions.py does the same in Python.
  *
  *     actions CASE      CASE has two fish; the second one is led */
 #include <math.h>

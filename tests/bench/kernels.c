@@ -1,7 +1,7 @@
-/* kernels.c: interactions of sources and targets per second, on one core, of both kernels: sums of one wake at itself
- * with every variant of the processor, in pairs, with gradients, and by the tree, which shows where the tree begins to
- * be faster (kernel.h: tree_sources, tree_interactions). Printed by `make bench`. The machine may be shared: each rate
- * is the best of several runs, and only rates of one run of this program can be compared. */
+/* kernels.c: measures how many interactions of sources and targets one core computes per second, with both kernels. It
+ * sums one wake at itself with every variant of the inner loops, in pairs, with gradients, and by the tree, which shows
+ * from where on the tree is faster (kernel.h: tree_sources, tree_interactions). `make bench` runs it. The machine may
+ * be shared, so each rate is the best of several runs, and only rates of one run of this program can be compared. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

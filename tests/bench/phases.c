@@ -1,4 +1,4 @@
-/* phases.c: the phases of a run, and the growth of the time with the school, for `make bench`.
+/* phases.c: measures where the time of a run goes, and how it grows with the school, for `make bench`.
  *
  * phases CASES           single_free and diamond, with one thread and with two: time per event, simulated time per
  *                          second of wall clock, the ratio to the lower bound, the parts of the time
@@ -7,8 +7,8 @@
  * phases CASES --schools THREADS N... the same for other schools and more threads
  * phases CASES --finite-schools ... the same with `pressure.span: finite`
  *
- * Schools take turns, event by event, and the ratios use the least times, because other processes slow some events, on
- * one core or both, but hardly all events.
+ * Schools take turns, event by event, and the ratios use the least times, because other processes slow down some
+ * events, on one core or both, but hardly ever all of them.
  *
  * CASES is the folder of the cases. The linker wraps the functions below in a clock, which is not in the program. The
  * lower bound is the CPU time of all pairwise interactions of an event at the best rate of one core in the same run;

@@ -1,5 +1,5 @@
-/* files.c: calls of the system about files that fail on demand, and a log of all changes of files; to be preloaded
- * (LD_PRELOAD): tests/soak/faults.py, tests/soak/power.py.
+/* files.c: lets calls of the system about files fail on demand, and logs all changes of files. tests/soak/faults.py and
+ * tests/soak/power.py preload it (LD_PRELOAD).
  *
  *     FAULT_PATH   the calls about files whose path contains this are counted and logged, all others pass
  *     FAULT_CALL   name of the call that fails: open, read, write, pwrite, lseek, fsync, ftruncate, rename, close

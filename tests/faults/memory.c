@@ -1,6 +1,6 @@
-/* memory.c: allocations and threads of a program that fail on demand, to be preloaded (LD_PRELOAD):
- * tests/soak/memory.py. Those of its libraries pass. The address sanitizer, which has a malloc of its own, cannot do
- * with this one.
+/* memory.c: lets allocations and threads of a program fail on demand, but not those of its libraries.
+ * tests/soak/memory.py preloads it (LD_PRELOAD). It cannot be used with the address sanitizer, which has a malloc of
+ * its own.
  *
  *     MEMORY_AT      which allocation fails, from 1; 0: none
  *     MEMORY_COUNT   a file to append the number of allocations to at the end

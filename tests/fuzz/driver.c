@@ -1,4 +1,4 @@
-/* driver.c: seeded mutations of files for a fuzz target, where there is no libFuzzer.
+/* driver.c: feeds a fuzz target with seeded mutations of files, where there is no libFuzzer.
  *
  *     fuzz_case N SEED FILE...      N inputs, always the same ones for a SEED
  *     fuzz_case 1 - FILE            the file as it is

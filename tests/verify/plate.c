@@ -1,4 +1,4 @@
-/* plate.c: the section "plate": a rigid plate and the shed wake, against the linear theory of thin foils: Wagner's
+/* plate.c: the section "plate" compares a rigid plate and its wake with the linear theory of thin foils: Wagner's
  * impulsive start and a heaving plate. Length L = 1 m, speed U = 1 m/s.
  *
  * Linear theory has a vortex sheet that begins at the edge. So has the program by default (shedding: sheet), for which

@@ -1,4 +1,4 @@
-/* rod.c: the section "rod": the elastic body alone, without a fluid, against the theory of beams.
+/* rod.c: the section "rod" compares the elastic body alone, without a fluid, with the theory of beams.
  *
  * The rod of all checks: uniform, of length 1 m, with EI = rho A L^4/s^2, so that circular frequencies are (beta L)^2
  * per second. The thickness h determines the stretching stiffness: EA = 16 EI/h^2.

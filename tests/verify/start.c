@@ -1,4 +1,4 @@
-/* start.c: the section "start": the index of the equations and the consistent start, over all options of the model.
+/* start.c: the section "start" shows that the equations have index 1 and that the start is consistent, for all options.
  *
  * The equations have index 1 if the matrix of the algebraic equations by the algebraic unknowns is nonsingular. Rows
  * and columns have the units of accelerations, velocities, circulations and numbers; each row, then each column, is

@@ -1,5 +1,6 @@
-/* wake.c: the section "wake": free vortices alone. The bound sheets have strength zero and shed nothing, so only wakes
- * move wakes, with the steps of the program: velocities at an event (flow.c), then motion to the next event (wake.c).
+/* wake.c: the section "wake" has free vortices alone. The bound sheets have strength zero and shed nothing, so only
+ * wakes move wakes, with the steps of the program: velocities at an event (flow.c), then motion to the next event
+ * (wake.c).
  *
  * Two distant fish own the wakes: the checks concern the wake of the first fish; the wake of the second fish acts on
  * the first wake. */
