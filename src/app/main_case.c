@@ -63,7 +63,7 @@ enum status main_new(const struct request *request) {
                            strerror(errno));
     }
 
-    const int failed = fputs(case_template, file) == EOF;
+    const bool failed = fputs(case_template, file) == EOF;
     if (fclose(file) != 0 || failed) {
         const int code = errno;
         remove(path);

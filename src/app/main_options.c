@@ -216,10 +216,10 @@ int main_parse(const struct command *command, int argc, char **argv, struct requ
 
     for (int i = 0; command->options[i]; i++) {
         const struct option_help *from = option_of(command->options[i]);
-        const int has_argument = !from->argument               ? no_argument
-                                 : is_optional(from->argument) ? optional_argument
-                                                               : required_argument;
-        options[i] = (struct option){from->name, has_argument, NULL, from->code};
+        const int argument = !from->argument               ? no_argument
+                             : is_optional(from->argument) ? optional_argument
+                                                           : required_argument;
+        options[i] = (struct option){from->name, argument, NULL, from->code};
         if (from->code < OPTION_SET) {
             const size_t end = strlen(letters);
             letters[end] = (char)from->code;

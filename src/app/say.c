@@ -38,7 +38,7 @@ enum status say_begin(struct say_page *page) {
 }
 
 enum status say_end(struct say_page *page, FILE *stream, enum status status) {
-    const int failed = fclose(page->stream) != 0;
+    const bool failed = fclose(page->stream) != 0;
     if (page->text && stream) text_print_clean(stream, page->text);
     free(page->text);
     *page = (struct say_page){0};

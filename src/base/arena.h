@@ -34,8 +34,8 @@ struct arena *arena_create(struct arena *parent, const char *name);
 void arena_free(struct arena *arena); /* accepts NULL */
 
 /* An arena that is freed when this function returns; a lack of memory leaves it to the boundary. */
-#define ARENA(new, parent, name) \
-    __attribute__((cleanup(arena_leave))) struct arena *const new = arena_create(parent, name)
+#define ARENA(scratch, parent, name) \
+    __attribute__((cleanup(arena_leave))) struct arena *const scratch = arena_create(parent, name)
 static inline void arena_leave(struct arena *const *arena) {
     arena_free(*arena);
 }

@@ -385,7 +385,7 @@ static void boxes_pair_up(const struct search *search, int target, int source) {
             cost += CONVERSION;
         }
         cost += n_to * n_from;
-        const int both_leaves = target_is_leaf && source_is_leaf;
+        const bool both_leaves = target_is_leaf && source_is_leaf;
         if (both_leaves || cost < search->cost * n_targets * n_sources) {
             tree->interactions += cost;
             pair_add(tree, &pair);

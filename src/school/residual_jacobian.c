@@ -40,7 +40,7 @@ static void flow_jacobian(const struct residual *residual, const struct residual
 static void add_own_rows(const struct residual *residual, const struct residual_mode *mode, const struct fish *fish,
                          const struct coupling_block *rows, struct sparse *own) {
     const int n_nodes = fish->n_nodes, n_places = 2 * n_nodes;
-    const int rate = residual_sheet_law(residual, mode) == BOUND_SHEET_RATE;
+    const bool has_rate = residual_sheet_law(residual, mode) == BOUND_SHEET_RATE;
     const int felt_at_tail = n_nodes - (fish->tail_added_mass > 0 ? 3 : 2);
     for (int c = 0; c < rows->n_columns; c++) {
         const double *const value = rows->value + (long)c * rows->n_rows;
@@ -56,7 +56,7 @@ static void add_own_rows(const struct residual *residual, const struct residual_
             sparse_add(own, fish->at.ay + k, column, value[n_nodes + k]);
         }
         for (int k = 0; k < fish->n_control; k++) sparse_add(own, fish->at.gamma + k, column, value[n_places + k]);
-        if (rate) sparse_add(own, fish->at.circulation, column, value[fish->at.circulation - fish->at.ax]);
+        if (has_rate) sparse_add(own, fish->at.circulation, column, value[fish->at.circulation - fish->at.ax]);
     }
 }
 
@@ -181,7 +181,7 @@ void residual_mask(const struct residual *residual, struct jacobian *jacobian) {
         const struct fish *fish = &residual->school->fish[f];
         for (int row = fish->at.x; row < fish->at.end; row++) {
             const struct unknown_place place = residual_place(residual->school, row);
-            const int moves = place.kind <= UNKNOWN_AY && place.kind != UNKNOWN_PX && place.kind != UNKNOWN_PY;
+            const bool moves = place.kind <= UNKNOWN_AY && place.kind != UNKNOWN_PX && place.kind != UNKNOWN_PY;
             sparse_mask(jacobian->own[f], row, moves && fish_is_prescribed(fish, place.index, place.component));
         }
     }

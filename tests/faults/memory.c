@@ -90,11 +90,11 @@ int pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*
 }
 
 static char *copy(const char *text, size_t length) {
-    char *const new = __libc_malloc(length + 1);
-    if (!new) return NULL;
-    memcpy(new, text, length);
-    new[length] = '\0';
-    return new;
+    char *const made = __libc_malloc(length + 1);
+    if (!made) return NULL;
+    memcpy(made, text, length);
+    made[length] = '\0';
+    return made;
 }
 
 char *strdup(const char *text) {

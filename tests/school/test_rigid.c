@@ -55,13 +55,13 @@ TEST(what_is_added_is_read_and_other_fish_stay) {
     const struct rigid old = rigid_of(fish, setup.state->y);
     const struct rigid change = {{0.1, -0.2}, 0.3, {0.5, -0.4}, 0.7};
     rigid_change(setup.school, setup.state, 1, &change);
-    const struct rigid new = rigid_of(fish, setup.state->y);
+    const struct rigid now = rigid_of(fish, setup.state->y);
     for (int i = 0; i < 2; i++) {
-        NEAR(new.place[i], old.place[i] + change.place[i], 1e-14, 0);
-        NEAR(new.velocity[i], old.velocity[i] + change.velocity[i], 1e-14, 0);
+        NEAR(now.place[i], old.place[i] + change.place[i], 1e-14, 0);
+        NEAR(now.velocity[i], old.velocity[i] + change.velocity[i], 1e-14, 0);
     }
-    NEAR(remainder(new.heading - old.heading, 2 * M_PI), change.heading, 1e-14, 0);
-    NEAR(new.turn, old.turn + change.turn, 1e-13, 0);
+    NEAR(remainder(now.heading - old.heading, 2 * M_PI), change.heading, 1e-14, 0);
+    NEAR(now.turn, old.turn + change.turn, 1e-13, 0);
     lengths_of(fish, setup.state->y, after);
     NEAR_ARRAY(fish->n_edges, after, before, 1e-14, 0);
     assert_memory_equal(setup.state->y + other->at.x, others, (size_t)(other->at.end - other->at.x) * sizeof *others);

@@ -265,15 +265,15 @@ TEST(an_elastic_matrix_rotates_with_the_body) {
             struct configurations both;
             set_up(&both, 0.3, bends[i]);
             const int n = 2 * both.setup.school->fish[f].n_nodes;
-            double old[2 * MAX_NODES * 2 * MAX_NODES] = {0}, new[2 * MAX_NODES * 2 * MAX_NODES] = {0};
+            double old[2 * MAX_NODES * 2 * MAX_NODES] = {0}, turned[2 * MAX_NODES * 2 * MAX_NODES] = {0};
             double mapped[2 * MAX_NODES * 2 * MAX_NODES];
             stiffness(&both, f, both.reference, old);
-            stiffness(&both, f, both.current, new);
+            stiffness(&both, f, both.current, turned);
             memcpy(mapped, old, sizeof old);
             map_stiffness(&both, f, mapped);
             // exact after a rotation; after bending the error is half the rotation of an edge relative to the
             // neighbouring edges
-            const double error = largest_difference(n, mapped, new), without = largest_difference(n, old, new);
+            const double error = largest_difference(n, mapped, turned), without = largest_difference(n, old, turned);
             BELOW(error, (bends[i] > 0 ? 0.1 : 1e-12) * without);
         }
     }
