@@ -130,6 +130,10 @@ static void derive_fish(const struct key_place *at) {
     const bool is_held = (int)fish->motion.prescribed > PRESCRIBED_NONE;
     set_default(&fish->drag.normal, fish->force != FORCE_PRESSURE || (fish_is_strip(fish) && !is_held));
 
+    // the model has its own factors of friction unless these are read
+    fish->drag.has_waving = !isnan(fish->drag.waving);
+    fish->drag.has_form = !isnan(fish->drag.form);
+
     // times in beats
     const double beat = fish_parameters_frequency(fish), frequency = fish->wave.frequency;
     const double period = frequency > 0 ? 1 / frequency : 0;

@@ -104,7 +104,7 @@ static void body_fluid_set(struct fish *fish, const struct fish_parameters *from
     const double plane = thickest / fish->length;
     const double of_fish = surface * (1 + 1.5 * pow(largest, 1.5) + 7 * pow(largest, 3));
     const double of_wing = 1 + 2 * plane + 60 * pow(plane, 4);
-    fish->form = !isnan(drag->form) ? drag->form : fish_is_strip(from) ? of_fish : of_wing;
+    fish->form = drag->has_form ? drag->form : fish_is_strip(from) ? of_fish : of_wing;
     fish->nose_radius = thickest * thickest / (2 * fish->length);
 
     // added mass shed at the tail

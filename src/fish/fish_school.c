@@ -218,7 +218,7 @@ static void fish_fill(const struct school *school, int f, const struct school_pa
     // scales of the velocity
     const double rate = fish_rate(school, fish);
     fish->friction_speed = 1e-4 * fish->length * rate;
-    fish->waving = !isnan(from->drag.waving) ? from->drag.waving : fish_has_wave(fish) ? 1.5 : 1;
+    fish->waving = from->drag.has_waving ? from->drag.waving : fish_has_wave(fish) ? 1.5 : 1;
     fish->contact_strength = fish->total_mass * fish->length * rate * rate;
 }
 

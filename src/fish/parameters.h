@@ -102,7 +102,7 @@ struct body_parameters {
 
 struct wave_parameters {
     double amplitude, constant, linear, quadratic;
-    double number, wavelength; /* rad; body lengths, NaN: use number */
+    double number, wavelength; /* rad; body lengths, another form of number that a case may give */
     struct number_list
         table;        /* rows from nose to tail of natural curvature times length, over the phase; none: empty */
     double frequency; /* Hz */
@@ -112,10 +112,11 @@ struct wave_parameters {
 
 struct drag_parameters {
     double tangential, normal;
-    enum friction friction; /* law of the tangential drag */
-    double transition;      /* Reynolds number of the distance from the nose; 0: turbulent from the nose on */
-    double waving;          /* factor of laminar friction; NaN: 1.5 with a wave, else 1 */
-    double form;            /* factor of all friction; NaN: by the largest thickness */
+    enum friction friction;    /* law of the tangential drag */
+    double transition;         /* Reynolds number of the distance from the nose; 0: turbulent from the nose on */
+    bool has_waving, has_form; /* whether these factors are given */
+    double waving;             /* factor of laminar friction; by default 1.5 with a wave, else 1 */
+    double form;               /* factor of all friction; by default by the largest thickness */
     enum drag_law law;
     double linear_speed; /* lengths per beat: force reactive, law linear_quadratic */
 };
