@@ -54,6 +54,8 @@ static const struct option_help all_options[] = {
     {OPTION_END, "end", "SECONDS", "new end of the run; extends a complete run"},
     {OPTION_FROM, "from", "RESULT.nc",
      "start from the speeds and positions of another steady state (default: those of the case)"},
+    {OPTION_THRESHOLD, "threshold", "KEY=FROM:TO",
+     "find the value of a key, between two values, at which the state becomes unstable: fish[*].motion.heave=0.2:0.1"},
     {OPTION_CHECKPOINT_AT, "checkpoint-at", "LIST",
      "additional times of checkpoints in s, separated by commas (see time.checkpoint_interval)"},
     {OPTION_MAX_WALL, "max-wall", "HH:MM:SS",
@@ -106,12 +108,17 @@ void main_print_help(const struct command *command, FILE *stream) {
                  option->argument && !is_optional(option->argument) ? " " : "",
                  option->argument ? option->argument : "");
         if (option->code < OPTION_SET) names[1] = (char)option->code;
-        fprintf(stream, "  %-24s ", names);
         struct arena *const arena = arena_create(NULL, "the meaning of an option");
 
-        // the meaning in lines of at most 100 characters; all lines after the first are indented
+        // the meaning in lines of at most 100 characters, beside the names or, if these are long, below
         enum { COLUMN = 27, WIDTH = 100 };
         int column = COLUMN;
+        fprintf(stream, "  %s", names);
+        if (strlen(names) > COLUMN - 3) {
+            fprintf(stream, "\n%*s", COLUMN, "");
+        } else {
+            fprintf(stream, "%*s", COLUMN - 2 - (int)strlen(names), "");
+        }
         for (const char *word = meaning_of(arena, command, option); *word; word += word[0] == ' ') {
             const int length = (int)strcspn(word, " ");
             if (column > COLUMN && column + 1 + length > WIDTH) {
@@ -177,6 +184,7 @@ static void take_option(struct request *request, int code, char *argument) {
         case OPTION_SENSITIVITY: request->sensitivity = argument ? argument : ""; break;
         case OPTION_UNCERTAIN: request->uncertain[request->n_uncertain++] = argument; break;
         case OPTION_FROM: request->from = argument; break;
+        case OPTION_THRESHOLD: request->threshold = argument; break;
         case OPTION_AT: request->at = argument; break;
         case OPTION_GRID: request->grid = argument; break;
         case OPTION_BOX: request->box = argument; break;

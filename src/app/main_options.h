@@ -32,6 +32,7 @@ enum option_code {
     OPTION_VTK,
     OPTION_END,
     OPTION_FROM,
+    OPTION_THRESHOLD,
     OPTION_CHECKPOINT_AT,
     OPTION_MAX_WALL,
     OPTION_TRACE,
@@ -71,6 +72,7 @@ struct request {
     int n_uncertain;
     const char **uncertain; /* of --uncertain, "KEY=PART" */
     const char *from;
+    const char *threshold; /* "KEY=FROM:TO" */
     const char *at, *grid, *box;
     const char *vtk;
     const char *positional;

@@ -180,7 +180,7 @@ static void warn_of_state(struct run *run) {
 
     const double largest = found->n_multipliers > 0 ? hypot(found->real[0], found->imaginary[0]) : 0;
     const double error = found->n_multipliers > 0 ? found->multiplier_error[0] : 0;
-    if (largest > 1) {
+    if (largest > 1 && !run->options->judges_stability) {
         const bool is_certain = largest - error > 1;
         warn(run, "the steady state %s unstable: a disturbance grows by the factor %.4g +- %.2g a beat (limit 1)%s; %s",
              is_certain ? "is" : "may be", largest, error, is_certain ? ", so that a run leaves it" : "",
@@ -255,7 +255,10 @@ static enum status find_and_write(struct run *run) {
 
     // start from the initial values of the case, or from another steady state
     struct case_values values = *run->values;
-    if (options->from) TRY(steady_start_read(run->arena, options->from, &run->values->school, &values.school.fish));
+    if (options->from) {
+        TRY(steady_start_read(run->arena, options->from, options->before, options->ratio, &run->values->school,
+                              &values.school.fish));
+    }
     const enum status started = simulate_start(run->arena, &run->simulation, &values, options->stop);
     if (started == STATUS_STOPPED) {
         return status_fail(started, "stopped %s before the search: start the search again",

@@ -5,6 +5,7 @@
 #define STEADY_H
 
 #include <signal.h>
+#include <stdbool.h>
 
 #include "base/status.h"
 #include "case/case.h"
@@ -21,10 +22,13 @@ struct steady_progress {
 struct trace;
 
 struct steady_options {
-    const char *path;    /* of the result file */
-    const char *from;    /* steady result that supplies the initial speeds and positions; NULL: values of the case */
-    int overwrite;       /* replace an existing result */
-    const char *command; /* command line, for the history attribute of the file */
+    const char *path;      /* of the result file */
+    const char *from;      /* steady result that supplies the initial speeds and positions; NULL: values of the case */
+    const char *before;    /* extrapolate the start from this state through from; NULL: start from from */
+    double ratio;          /* distance of this case from from, over the distance of from from before */
+    int overwrite;         /* replace an existing result */
+    bool judges_stability; /* the caller asks for the stability: no warning if the state is unstable */
+    const char *command;   /* command line, for the history attribute of the file */
     void (*progress)(const struct steady_progress *progress, void *data); /* may be NULL */
     void (*warn)(const char *line, void *data);                           /* may be NULL */
     void *data;
