@@ -81,10 +81,10 @@ enum status main_field(const struct request *request) {
     struct field_row *row;
     struct field_grid grid;
     double t;
-    t = NAN;
     if (request->at) TRY(read_numbers("--at", request->at, "a time in s", 1, &t));
     if (path) TRY(target_refuse_input(path, run));
-    TRY(field_row_read(request->arena, &row, run, t, request->n_assignments, request->assignments));
+    TRY(field_row_read(request->arena, &row, run, request->at ? &t : NULL, request->n_assignments,
+                       request->assignments));
 
     // RUN-field.nc of RUN.nc
     if (!path) {

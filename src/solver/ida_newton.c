@@ -66,8 +66,10 @@ static void newton_record(struct ida_newton *newton, double all, double differen
         attempt->worst_correction = weighted;
     }
     if (i >= TRACE_MOST_CORRECTIONS) return;
-    const double rate = newton->done > 1 ? pow(all / newton->first[ALL], 1.0 / (newton->done - 1)) : NAN;
-    attempt->correction[i] = (struct trace_correction){all, differential, rate, newton->done == 1};
+    attempt->is_first[i] = newton->done == 1;
+    attempt->norm[i] = all;
+    attempt->differential[i] = differential;
+    attempt->rate[i] = newton->done > 1 ? pow(all / newton->first[ALL], 1.0 / (newton->done - 1)) : NAN;
 }
 
 // iterate with the present Jacobian; newton->correction holds the residual when the iteration starts

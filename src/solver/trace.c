@@ -2,9 +2,7 @@
 #include "solver/trace.h"
 
 #include <errno.h>
-#include <stddef.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "school/residual.h"
@@ -41,13 +39,10 @@ enum status trace_create(struct arena *arena, struct trace **created, const char
 }
 
 // the values of all corrections, separated by blanks; a bar before the first one with a new Jacobian
-static void trace_list(FILE *file, const struct trace_attempt *attempt, size_t offset) {
+static void trace_list(FILE *file, const struct trace_attempt *attempt, const double *value) {
     const int n = attempt->n_corrections < TRACE_MOST_CORRECTIONS ? attempt->n_corrections : TRACE_MOST_CORRECTIONS;
     for (int i = 0; i < n; i++) {
-        const struct trace_correction *const correction = &attempt->correction[i];
-        double value;
-        memcpy(&value, (const char *)correction + offset, sizeof value);
-        fprintf(file, "%s%.3g", i == 0 ? "" : correction->is_first ? " | " : " ", value);
+        fprintf(file, "%s%.3g", i == 0 ? "" : attempt->is_first[i] ? " | " : " ", value[i]);
     }
     fputc(',', file);
 }
@@ -58,13 +53,13 @@ void trace_write(struct trace *trace, const struct school *school, const struct 
     FILE *const file = trace->file;
     int n_jacobians = 0;
     for (int i = 0; i < attempt->n_corrections && i < TRACE_MOST_CORRECTIONS; i++) {
-        n_jacobians += attempt->correction[i].is_first && (i > 0 || attempt->age == 0);
+        n_jacobians += attempt->is_first[i] && (i > 0 || attempt->age == 0);
     }
     fprintf(file, "%ld,%.10g,%.6g,%d,%s,%d,%d,%d,%.4g,%ld,", attempt->event, attempt->t, attempt->step, attempt->order,
             words[result], attempt->n_corrections, n_jacobians, attempt->age, attempt->cj_ratio, attempt->gmres);
-    trace_list(file, attempt, offsetof(struct trace_correction, norm));
-    trace_list(file, attempt, offsetof(struct trace_correction, differential));
-    trace_list(file, attempt, offsetof(struct trace_correction, rate));
+    trace_list(file, attempt, attempt->norm);
+    trace_list(file, attempt, attempt->differential);
+    trace_list(file, attempt, attempt->rate);
     if (attempt->n_corrections == 0) {
         fputs(",,\n", file);
         if (ferror(file) && trace->error == 0) trace->error = errno;

@@ -18,12 +18,6 @@ enum trace_result { TRACE_ACCEPTED, TRACE_ERROR_TEST, TRACE_NEWTON, TRACE_NO_VAL
 
 /* The corrections of one attempt, made with an old Jacobian and then perhaps with a new one. */
 enum { TRACE_MOST_CORRECTIONS = 64 };
-struct trace_correction {
-    /* over all unknowns, and over the differential ones if these are tested (else NaN), in tolerances */
-    double norm, differential;
-    double rate;   /* of the norm since the first correction with this Jacobian; NaN: the first */
-    bool is_first; /* the first one with this Jacobian */
-};
 
 struct trace_attempt {
     long event;        /* number of the event at the end of the interval */
@@ -33,9 +27,12 @@ struct trace_attempt {
     double cj_ratio;   /* leading coefficient of the step over the one of the Jacobian */
     long gmres;        /* iterations of GMRES */
     int n_corrections; /* the first TRACE_MOST_CORRECTIONS are kept */
-    struct trace_correction correction[TRACE_MOST_CORRECTIONS];
-    int worst;               /* the unknown with the largest last correction, if there was a correction */
-    double worst_correction; /* in tolerances */
+    bool is_first[TRACE_MOST_CORRECTIONS]; /* the first one with its Jacobian */
+    /* over all unknowns, and over the differential ones if these are tested (else NaN), in tolerances */
+    double norm[TRACE_MOST_CORRECTIONS], differential[TRACE_MOST_CORRECTIONS];
+    double rate[TRACE_MOST_CORRECTIONS]; /* of the norm since the first correction with this Jacobian, there NaN */
+    int worst;                           /* the unknown with the largest last correction, if there was a correction */
+    double worst_correction;             /* in tolerances */
 };
 
 /* Create the file with its header. overwrite: replace a file that exists. Fails with STATUS_FILE. */

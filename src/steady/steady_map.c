@@ -58,12 +58,13 @@ enum status steady_map_refuse(const struct school *school) {
 
 enum status steady_map_create(struct steady_map *map, struct simulation *simulation) {
     const struct school *const school = simulation->school;
-    *map = (struct steady_map){.simulation = simulation, .steered = -1};
+    *map = (struct steady_map){.simulation = simulation};
     NEW(simulation->arena, map->last, school->n_fish);
     NEW(simulation->arena, map->before, school->n_fish);
-    for (int f = 0; f < school->n_fish && map->steered < 0; f++) {
+    for (int f = 0; f < school->n_fish && !map->is_steered; f++) {
         const enum control_law law = school->fish[f].control.law;
-        if (law != CONTROL_NONE && law != CONTROL_PLACE) map->steered = f;
+        map->is_steered = law != CONTROL_NONE && law != CONTROL_PLACE;
+        map->steered = f;
     }
     TRY(steady_map_refuse(school));
     map->period = first_beating(school)->period;
@@ -185,7 +186,7 @@ void steady_map_read(const struct steady_map *map, int n, const struct steady_un
 
         // the heading is relative to that of the first fish; of the first fish, to the desired heading, if any
         double heading = first.heading;
-        if (f == 0 && map->steered >= 0) {
+        if (f == 0 && map->is_steered) {
             heading =
                 control_desired_heading(&school->fish[map->steered], &state->control[map->steered], state->t, state->y);
         }

@@ -53,8 +53,9 @@ struct steady_beat {
 
 struct steady_map {
     struct simulation *simulation;
-    bool is_formation;                 /* the residual includes places */
-    int steered;                       /* first fish with a control law other than place; -1: no fish */
+    bool is_formation; /* the residual includes places */
+    bool is_steered;   /* whether a fish has a control law other than place; the first one */
+    int steered;
     long events;                       /* per beat */
     double period;                     /* s */
     int n_beats;                       /* beats since the start */

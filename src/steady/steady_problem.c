@@ -60,7 +60,7 @@ enum status steady_problem_create(struct steady_problem *problem, const struct c
     for (int f = 0; f < school->n_fish; f++) {
         const enum steady_freedom freedom = steady_map_freedom(&school->fish[f]);
         const bool is_free = freedom != STEADY_HELD, swims = freedom == STEADY_SWIMS;
-        const bool follows = f > 0 && problem->map.is_formation, is_steered = problem->map.steered >= 0;
+        const bool follows = f > 0 && problem->map.is_formation, is_steered = problem->map.is_steered;
         const struct {
             enum steady_quantity quantity;
             bool is_slow, is_pinned;

@@ -52,28 +52,29 @@ static enum status next_with_wake(const struct reading *reading, const struct sc
     return STATUS_OK;
 }
 
-/* The row at time t; NaN: the last row with a wake. */
-static enum status field_find_row(const struct reading *reading, const struct school *school, double t, long *row) {
+/* The row at a time; without one (NULL), the last row with a wake. */
+static enum status field_find_row(const struct reading *reading, const struct school *school, const double *t,
+                                  long *row) {
     const long last = reading->n_rows - 1;
     const double *const time = reading->time, rounding = 1e-6 * school->interval;
     if (last < 0) return status_fail(STATUS_CASE, "%s: there is no row yet", reading->file.path);
-    if (t < time[0] - rounding || t > time[last] + rounding) {
-        return status_fail(STATUS_CASE, "%s: t = %g s is outside of the rows, %g s to %g s", reading->file.path, t,
+    *row = t ? 0 : last;
+    if (t && (*t < time[0] - rounding || *t > time[last] + rounding)) {
+        return status_fail(STATUS_CASE, "%s: t = %g s is outside of the rows, %g s to %g s", reading->file.path, *t,
                            time[0], time[last]);
     }
 
-    *row = isnan(t) ? last : 0;
-    while (*row < last && time[*row] < t - rounding) ++*row;
-    if (!isnan(t) && *row > 0 && fabs(time[*row] - t) > rounding) {
+    while (t && *row < last && time[*row] < *t - rounding) ++*row;
+    if (t && *row > 0 && fabs(time[*row] - *t) > rounding) {
         return status_fail(STATUS_CASE, "%s: there is no row at t = %g s: the nearest are at %g s and %g s",
-                           reading->file.path, t, time[*row - 1], time[*row]);
+                           reading->file.path, *t, time[*row - 1], time[*row]);
     }
 
     // the row itself or, without a time, the nearest earlier row with a wake
     const long found = *row;
     long before, after;
     TRY(next_with_wake(reading, school, found, -1, &before));
-    if (is_row(reading, before) && (isnan(t) || before == found)) {
+    if (is_row(reading, before) && (!t || before == found)) {
         *row = before;
         return STATUS_OK;
     }
@@ -160,7 +161,7 @@ static enum status read_wake(const struct reading *reading, long row, int f, con
 
 // ---- the whole
 
-static enum status field_read_row(struct arena *arena, struct reading *reading, double t, struct field_row *to) {
+static enum status field_read_row(struct arena *arena, struct reading *reading, const double *t, struct field_row *to) {
     const struct school *const school = to->school;
     size_t n_fish, n_rows, longest = 1;
     long row = 0;
@@ -200,7 +201,7 @@ static enum status field_read_row(struct arena *arena, struct reading *reading, 
     return STATUS_OK;
 }
 
-enum status field_row_read(struct arena *arena, struct field_row **created, const char *path, double t,
+enum status field_row_read(struct arena *arena, struct field_row **created, const char *path, const double *t,
                            int n_assignments, const char *const *assignments) {
     struct arena *const scratch = arena_create(arena, path);
     struct reading *reading;

@@ -17,10 +17,10 @@ struct field_row {
     struct state *state; /* time, positions, sheets and wakes of the row */
 };
 
-/* Read the row at time t [s], NaN: the last row with a wake, of the result file at path; assignments can set
- * solver.threads for the sums. Fails with STATUS_CASE if the file has no such row, or STATUS_FILE. The
- * path must outlive the arena. */
-enum status field_row_read(struct arena *arena, struct field_row **row, const char *path, double t, int n_assignments,
-                           const char *const *assignments);
+/* Read the row at time *t [s], or without t (NULL) the last row with a wake, of the result file at path; assignments
+ * can set solver.threads for the sums. Fails with STATUS_CASE if the file has no such row, or STATUS_FILE. The path
+ * must outlive the arena. */
+enum status field_row_read(struct arena *arena, struct field_row **row, const char *path, const double *t,
+                           int n_assignments, const char *const *assignments);
 
 #endif

@@ -340,9 +340,9 @@ TEST(corrections_are_recorded_only_while_they_are_wanted) {
     assert_int_equal(attempt->n_corrections, problem->iterations);
     assert_int_equal(attempt->age, 1);
     for (int i = 0; i < attempt->n_corrections; i++) {
-        NEAR(attempt->correction[i].norm, 1.8 * pow(0.1, i), 0, 1e-9);
-        assert_int_equal(attempt->correction[i].is_first, i == 0);
-        if (i > 0) NEAR(attempt->correction[i].rate, 0.1, 0, 1e-9);
+        NEAR(attempt->norm[i], 1.8 * pow(0.1, i), 0, 1e-9);
+        assert_int_equal(attempt->is_first[i], i == 0);
+        if (i > 0) NEAR(attempt->rate[i], 0.1, 0, 1e-9);
     }
 
     // one that fails is replaced within the same record
@@ -352,7 +352,7 @@ TEST(corrections_are_recorded_only_while_they_are_wanted) {
     assert_int_equal(solve(problem, 1e-6, 0), 0);
     assert_int_equal(problem->n_recorded, 2);
     assert_int_equal(attempt->n_corrections, 5);
-    assert_true(attempt->correction[3].is_first);
+    assert_true(attempt->is_first[3]);
 
     problem->is_traced = 0;
     problem->coefficient *= 2;

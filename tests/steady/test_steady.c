@@ -404,6 +404,7 @@ TEST(headings_are_seen_from_the_first_fish_and_its_from_the_first_that_is_steere
                "desired_heading: 100}}]\n");
     struct steady_map map;
     school_ok(steady_map_create(&map, simulation));
+    assert_true(map.is_steered);
     assert_int_equal(map.steered, 1);
     const struct steady_unknown unknown[] = {{0, STEADY_HEADING}, {1, STEADY_HEADING}, {2, STEADY_HEADING}};
     double heading[3], from[3];

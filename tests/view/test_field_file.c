@@ -80,7 +80,7 @@ TEST(the_flow_of_a_row_is_that_of_the_run) {
         school_run(run, 0.6);
         struct field_row *row;
         struct points there, here;
-        school_ok(field_row_read(test_arena(), &row, path, NAN, 0, NULL));
+        school_ok(field_row_read(test_arena(), &row, path, NULL, 0, NULL));
         struct flow *const flow = flow_create(test_arena(), row->school);
         NEAR(row->state->t, 0.6, 1e-12, 0);
         assert_int_equal(row->state->wake[0].n_vortex, run->state->wake[0].n_vortex);
@@ -152,7 +152,7 @@ TEST(at_a_tail_it_is_what_the_tail_feels) {
     }
     struct field_row *row;
     struct points points;
-    school_ok(field_row_read(test_arena(), &row, path, 0.6, 0, NULL));
+    school_ok(field_row_read(test_arena(), &row, path, &(double){0.6}, 0, NULL));
     struct flow *const flow = flow_create(test_arena(), row->school);
     place_points(&points);
     for (int f = 0; f < 2; f++) {
@@ -172,7 +172,7 @@ TEST(at_a_tail_it_is_what_the_tail_feels) {
 static void refused(double t, enum status want, const char *part) {
     ARENA(arena, NULL, "a row");
     struct field_row *row;
-    const enum status status = field_row_read(arena, &row, path, t, 0, NULL);
+    const enum status status = field_row_read(arena, &row, path, &t, 0, NULL);
     if (status != want || !strstr(status_message(), part)) {
         fail_msg("t = %g: status %d, message: %s", t, (int)status, status_message());
     }
@@ -186,13 +186,13 @@ TEST(other_times_are_refused) {
     refused(0.7, STATUS_CASE, "outside of the rows, 0 s to 0.6 s");
     refused(-0.1, STATUS_CASE, "outside of the rows");
     struct field_row *row;
-    school_ok(field_row_read(test_arena(), &row, path, 0.3, 0, NULL));
+    school_ok(field_row_read(test_arena(), &row, path, &(double){0.3}, 0, NULL));
     NEAR(row->state->t, 0.3, 1e-12, 0);
 
     // a time may be off by a millionth of an interval of 0.02 s
     static const double close[] = {0.3 - 1.9e-8, 0.3 + 1.9e-8, 0.6 + 1.9e-8, -1.9e-8};
     for (int i = 0; i < 4; i++) {
-        school_ok(field_row_read(test_arena(), &row, path, close[i], 0, NULL));
+        school_ok(field_row_read(test_arena(), &row, path, &close[i], 0, NULL));
         NEAR(row->state->t, close[i], 1.95e-8, 0);
     }
     refused(0.3 + 2.1e-8, STATUS_CASE, "no row at t = 0.3 s: the nearest are at 0.3 s and 0.4 s");
@@ -239,7 +239,7 @@ TEST(the_file_has_the_field_on_its_grid) {
     write_run(school_of("sheet"));
     struct field_row *row;
     struct field_grid grid = {.nx = 12, .ny = 5};
-    school_ok(field_row_read(test_arena(), &row, path, NAN, 0, NULL));
+    school_ok(field_row_read(test_arena(), &row, path, NULL, 0, NULL));
     field_file_box(row, grid.low, grid.high);
     // half a length of the longer fish around all nodes and vortices
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
