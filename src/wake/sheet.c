@@ -69,7 +69,8 @@ void sheet_reserve(struct arena *arena, struct sheet *sheet, int n) {
     sheet->arena = arena;
     sheet->capacity = n + n / 2;
     double **const padded[] = {&sheet->x[0], &sheet->x[1], &sheet->y[0], &sheet->y[1], &sheet->label};
-    double **const all[] = {&sheet->remains[0], &sheet->remains[1], &sheet->distance[0], &sheet->distance[1]};
+    double **const all[] = {&sheet->remains[0], &sheet->remains[1], &sheet->distance[0], &sheet->distance[1],
+                            &sheet->birth};
     for (size_t i = 0; i < sizeof padded / sizeof *padded; i++) {
         GROW(arena, *padded[i], sheet->capacity + 2 * SHEET_PAD);
     }
@@ -131,10 +132,15 @@ static void points_add(const struct sheet *sheet, struct sheet_points *points, c
     }
 }
 
-// select the old markers, with the matrix of their forms, as the points of both views
-static void build_old(struct sheet *sheet, const struct fish *fish, const struct school *school,
-                      const struct wake *wake, double t) {
+// the matrix of the forms of old stretches; an event, which builds a sheet twice, needs it once
+static void find_diagonals(struct sheet *sheet, const struct school *school, const struct wake *wake) {
     const int n = wake->n_vortex;
+    const size_t size = (size_t)n * sizeof *wake->birth;
+    if (sheet->n_births == n && sheet->n_old == wake->n_old && memcmp(sheet->birth, wake->birth, size) == 0) return;
+    sheet->n_births = n;
+    sheet->n_old = wake->n_old;
+    memcpy(sheet->birth, wake->birth, size);
+
     // the longest forms end with the newest marker of the newest old stretch, or with marker 5 of the oldest stretches
     const int half = STRETCH_MARKERS / 2, most = (wake->n_old > half ? wake->n_old : half) + half;
     sheet->n_markers = wake->n_old == 0 ? 0 : most < n ? most : n;
@@ -148,6 +154,12 @@ static void build_old(struct sheet *sheet, const struct fish *fish, const struct
             for (int b = 0; b < form.n; b++) sheet->diagonal[b - a + SHEET_PAD][form.first + a] += form.part[a][b];
         }
     }
+}
+
+// select the old markers as the points of both views
+static void build_old(struct sheet *sheet, const struct fish *fish, const struct school *school,
+                      const struct wake *wake, double t) {
+    find_diagonals(sheet, school, wake);
     for (int i = 0; i < sheet->n_markers; i++) {
         points_add(sheet, &sheet->graded, fish, school, wake, t, i, i, 0, 1);
         sheet->middles.n_released++;
@@ -159,7 +171,7 @@ void sheet_build(struct sheet *sheet, const struct fish *fish, const struct scho
     const bool is_sheet = school->shedding == SHEDDING_SHEET;
     const int n = wake->n_vortex, n_stretches = is_sheet && n > 0 ? n - 1 : 0;
     struct sheet_points *const graded = &sheet->graded, *const middles = &sheet->middles;
-    graded->n_released = middles->n_released = sheet->n_markers = sheet->n_single = 0;
+    graded->n_released = middles->n_released = sheet->n_single = 0;
     graded->n_nascent = is_sheet ? SHEET_PANEL : 0;
     middles->n_nascent = 1;
     for (int i = 0; i < n && !is_sheet; i++) middles->newer[middles->n_released++] = i;

@@ -70,8 +70,11 @@ struct sheet {
     /* markers at both ends of the interval or at one time, and labels, behind SHEET_PAD zeros; remaining parts of
      * labels and distances from the tail along the sheet at both ends of the interval                 (n_vortex) */
     double *x[2], *y[2], *label, *remains[2], *distance[2];
-    /* diagonals k of the matrix of all forms: old marker i has the part k of label i + k - SHEET_PAD  (n_markers) */
+    /* diagonals k of the matrix of all forms: old marker i has the part k of label i + k - SHEET_PAD  (n_markers); and
+     * what it depends on, the times of birth                                                       (n_births) */
     double *diagonal[SHEET_DIAGONALS];
+    double *birth;
+    int n_births, n_old;
 };
 
 /* Make room for a wake of n vortices or markers. */
