@@ -81,6 +81,51 @@ def growth(bench):
         last = now
 
 
+EARLIER = "7a50a9ba"
+
+
+@table("fish", "interval", "lifetime", "earlier lifetime", "CPU time over the earlier")
+def earlier(bench):
+    """CPU time with full wakes over that of commit 7a50a9ba, which drops no markers: both resume the same schools (minutes)"""
+    tree = os.path.join(bench.folder, "earlier")
+    os.mkdir(tree)
+    archive = subprocess.run(["git", "-C", HERE, "archive", EARLIER], check=True, capture_output=True).stdout
+    subprocess.run(["tar", "-x", "-C", tree], input=archive, check=True)
+    subprocess.run(["make", "-C", tree, "-j2", "build/shoal"], check=True, capture_output=True)
+    programs = bench.program, os.path.join(tree, "build", "shoal")
+
+    def full(n, interval, lifetime, program, name, more):
+        """Fill the wakes; the seconds of the run that follows."""
+        keys = f"start: {{speed: 0.81}}, control: {{law: {'course' if n == 1 else 'heading'}}}"
+        with open(os.path.join(bench.folder, name + ".yaml"), "w", encoding="utf-8") as file:
+            file.write(lattice(n, (2, 1), lifetime, interval, 0.5, keys) +
+                       f"wake: {{lifetime: {lifetime}, decay: {lifetime / 4}}}\nsolver: {{threads: 1}}\n")
+        paths = [name + end for end in (".nc", ".ckpt")]
+        for path in paths:
+            if os.path.exists(os.path.join(bench.folder, path)):
+                os.remove(os.path.join(bench.folder, path))
+        subprocess.run([program, "run", name + ".yaml", "-q", "--checkpoint-at", f"{lifetime:g}"], cwd=bench.folder, check=True,
+                       capture_output=True)
+        kept = [open(os.path.join(bench.folder, path), "rb").read() for path in paths]
+
+        def once():
+            for path, data in zip(paths, kept):
+                with open(os.path.join(bench.folder, path), "wb") as file:
+                    file.write(data)
+            before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+            subprocess.run([program, "resume", name + ".ckpt", "-q", "--end", f"{lifetime + more:g}"], cwd=bench.folder,
+                           check=True, capture_output=True)
+            return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+        return once
+
+    for n, interval, lifetime, over, more in ((1, 0.01, 3, 3, 16), (4, 0.01, 3, 3, 5), (16, 0.01, 3, 3, 1.5), (64, 0.01, 3, 3, 0.5),
+                                              (1, 0.02, 3, 3, 16), (4, 0.02, 3, 3, 5), (16, 0.02, 3, 3, 1.5), (64, 0.02, 3, 3, 0.5),
+                                              (1, 0.01, 10, 10, 8), (4, 0.01, 10, 10, 2), (1, 0.01, 8, 3, 8), (4, 0.01, 8, 3, 4)):
+        runs = [full(n, interval, lifetime, programs[0], "now", more), full(n, interval, over, programs[1], "before", more)]
+        times = [min(pair) for pair in zip(*([run() for run in runs] for _ in range(3 if n < 16 else 2 if n < 64 else 1)))]
+        yield n, interval, lifetime, over, f"{times[0] / times[1]:.2f}"
+
+
 @table("force", "span", "CPU time over reactive", "of 16 fish", *COUNTS)
 def forces(bench):
     """cost of a default fish (10 s) and of 16 fish (2 s) with three forces, one thread (minutes)"""

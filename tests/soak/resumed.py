@@ -10,10 +10,10 @@ from common import argument, different, finish, judge, shoal, values, write
 n_cases, first = argument(2, 120), argument(3, 0)
 
 
-def draw_fish(draw, k, span):
+def draw_fish(draw, k, span, can_press):
     """One fish as keys of a case file."""
-    laws = ["none", "none", "course", "heading, desired_heading: 150", "place, of: f0, offset: [1.2, 0.2]" if k else "course"]
-    force = draw.choice([f"force: pressure, pressure: {{span: {span}}}"] * 4 + ["force: reactive"])
+    laws = ["none", "none", "course", "heading, desired_heading: 150", f"place, of: f0, offset: [{1.2 * k:.1f}, 0.2]" if k else "course"]
+    force = draw.choice([f"force: pressure, pressure: {{span: {span}}}"] * 4 * can_press + ["force: reactive"])
     start = (f"position: [{draw.choice([0.3, 1.2]) * k + draw.uniform(-0.1, 0.1):.3f}, {draw.choice([0.35, -0.5]) * k:.3f}], "
              f"heading: {draw.uniform(170, 190):.2f}, speed: {draw.choice([0.5, 0.8, 2])}")
     return (f"  - {{name: f{k}, {force}, nodes: {draw.choice([9, 13])}, start: {{{start}}},\n"
@@ -27,13 +27,13 @@ def draw_case(draw):
     n_events = draw.randrange(60, 130)
     span = draw.choice(["finite", "finite", "infinite"])
     shedding = draw.choice(["sheet"] * 5 + ["continuous"]) if span == "infinite" else "sheet"
-    fluid = draw.choice(["", "", "fluid: {walls: [-3, 3]}\n", "fluid: {gust: {amplitude: 0.1, profile: sine, wavelength: 2, speed: 0.5}}\n"])
-    method = draw.choice(["ida"] * 5 + ["imex"])
+    fluid = draw.choice(["", "", "fluid: {walls: [-3, 3]}\n", "fluid: {gust: {amplitude: 0.1, frequency: 1}}\n"])
+    method = draw.choice(["ida"] * 5 + [f"imex, step: {interval}"])
     early = draw.randrange(5, n_events - 5)
     text = (f"format: 1\ntime: {{end: {n_events * interval:.2f}, shedding_interval: {interval}, output_interval: {interval}}}\n"
             f"wake: {{shedding: {shedding}, lifetime: {draw.choice([0.9, 1.3, 8])}, decay: {draw.choice([0.2, 0.5])}}}\n"
             f"solver: {{method: {method}}}\n{fluid}fish:\n"
-            + "".join(draw_fish(draw, k, span) for k in range(draw.choice([1, 2, 2, 3, 4, 6]))))
+            + "".join(draw_fish(draw, k, span, shedding == "sheet") for k in range(draw.choice([1, 2, 2, 3, 4, 6]))))
     return text, f"{early * interval:.2f}", f"{n_events * interval:.2f}"
 
 
