@@ -76,7 +76,7 @@ static void stretch_circulations(const struct window *window, const struct wake 
 static void impulse_add_wake(struct impulse_moments *sum, const struct wake *wake, const struct school *school,
                              double t, double tau, struct strengths of, struct strengths less_of, double factor) {
     const bool is_change = less_of.exist;
-    struct stretch_form form = {.n = 0};
+    struct stretch_form form;
     struct window window = {.next = 0};
     for (int j = 0; j < wake_n_sources(wake); j++) {
         // what does not decay does not change: nothing from the oldest marker of this stretch on

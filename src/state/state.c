@@ -7,6 +7,7 @@
 
 #include "body/rod.h"
 #include "fish/fish_motion.h"
+#include "wake/stretch.h"
 
 struct state *state_create(struct arena *parent, const struct school *school) {
     struct arena *const arena = arena_create(parent, "the state");
@@ -27,9 +28,11 @@ struct state *state_create(struct arena *parent, const struct school *school) {
 
     // set values that do not start at zero
     state->closest->distance = INFINITY;
+    const struct stretch_forms *const forms = stretch_forms_create(arena);
     for (int f = 0; f < n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         wake_create(arena, &state->wake[f], 16);
+        state->wake[f].forms = forms;
         state->wake[f].has_markers = school->shedding == SHEDDING_SHEET;
 
         struct history *const history = &state->history[f];
@@ -151,6 +154,7 @@ const struct state_row state_table[] = {
     {"past", OF_STATE(STATE_REAL, past), STATE_PASTS},
 
     {"wake.arena", OF_WAKE(STATE_UNKEPT, arena), STATE_NO_ARRAY},
+    {"wake.forms", OF_WAKE(STATE_UNKEPT, forms), STATE_NO_ARRAY},
     {"wake.version", OF_WAKE(STATE_UNKEPT, version), STATE_NO_ARRAY},
     {"wake.n_vortex", OF_WAKE(STATE_INTEGER, n_vortex), STATE_NO_ARRAY},
     {"wake.capacity", OF_WAKE(STATE_UNKEPT, capacity), STATE_NO_ARRAY},

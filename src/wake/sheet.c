@@ -147,7 +147,7 @@ static void find_diagonals(struct sheet *sheet, const struct school *school, con
     for (int k = 0; k < SHEET_DIAGONALS; k++) {
         memset(sheet->diagonal[k], 0, (size_t)sheet->n_markers * sizeof(double));
     }
-    struct stretch_form form = {.n = 0};
+    struct stretch_form form;
     for (int j = 0; j < wake->n_old; j++) {
         stretch_set_form(&form, wake, school, j);
         for (int a = 0; a < form.n; a++) {

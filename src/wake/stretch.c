@@ -49,27 +49,64 @@ static void evaluate_polynomials(int n, const double *node, const double *scale,
     }
 }
 
-// the integrals of l_a dl_b over the stretch `middle` between n nodes, by n - 1 Gauss points, which are exact
-static void set_parts(struct stretch_form *form) {
+typedef double parts[STRETCH_MARKERS][STRETCH_MARKERS];
+
+// the integrals of l_a dl_b over the stretch `middle` between n nodes, by n - 1 Gauss points, which are exact; gap: the
+// durations of the stretches
+static void find_parts(int n, const double *gap, int middle, parts to) {
     static const double cubic[2][3] = {{0.1127016653792583, 0.5, 0.8872983346207417}, {5. / 18, 8. / 18, 5. / 18}};
     static const double quintic[2][5] = {
         {0.04691007703066800, 0.2307653449471585, 0.5, 0.7692346550528415, 0.9530899229693320},
         {0.1184634425280945, 0.2393143352496832, 0.2844444444444444, 0.2393143352496832, 0.1184634425280945}};
-    const int n = form->n;
     const double *const place = n == 4 ? cubic[0] : quintic[0], *const weight = n == 4 ? cubic[1] : quintic[1];
-    const double own = form->gap[form->middle];
     double node[STRETCH_MARKERS] = {0}, scale[STRETCH_MARKERS];
-    for (int k = 0; k + 1 < n; k++) node[k + 1] = node[k] + form->gap[k];
+    for (int k = 0; k + 1 < n; k++) node[k + 1] = node[k] + gap[k];
     find_scales(n, node, scale);
-    memset(form->part, 0, sizeof form->part);
+    memset(to, 0, sizeof(parts));
     for (int p = 0; p < n - 1; p++) {
         double value[STRETCH_MARKERS], slope[STRETCH_MARKERS];
-        evaluate_polynomials(n, node, scale, node[form->middle] + place[p] * own, value, slope);
+        evaluate_polynomials(n, node, scale, node[middle] + place[p] * gap[middle], value, slope);
         for (int a = 0; a < n; a++) {
-            const double weighted = weight[p] * own * value[a];
-            for (int b = 0; b < n; b++) form->part[a][b] += weighted * slope[b];
+            const double weighted = weight[p] * gap[middle] * value[a];
+            for (int b = 0; b < n; b++) to[a][b] += weighted * slope[b];
         }
     }
+}
+
+/* Durations of neighbours over that of the stretch itself, on dyadic levels. A form is the same at any scale of time,
+ * so these serve almost all old stretches. */
+enum { MIDDLE = STRETCH_MARKERS / 2 - 1, N_RATIOS = 6, N_FORMS = N_RATIOS * N_RATIOS * N_RATIOS * N_RATIOS };
+static const double ratios[N_RATIOS] = {0.25, 0.5, 1, 2, 4, 8};
+
+struct stretch_forms {
+    parts part[N_FORMS];
+};
+
+const struct stretch_forms *stretch_forms_create(struct arena *arena) {
+    struct stretch_forms *forms;
+    NEW(arena, forms, 1);
+    for (int i = 0; i < N_FORMS; i++) {
+        double gap[STRETCH_MARKERS - 1];
+        for (int k = STRETCH_MARKERS - 2, rest = i; k >= 0; k--) {
+            gap[k] = k == MIDDLE ? 1 : ratios[rest % N_RATIOS];
+            if (k != MIDDLE) rest /= N_RATIOS;
+        }
+        find_parts(STRETCH_MARKERS, gap, MIDDLE, forms->part[i]);
+    }
+    return forms;
+}
+
+// the number of the form with these durations, or -1 if there is none
+static int find_form(const double gap[STRETCH_MARKERS - 1], const struct school *school) {
+    int form = 0;
+    for (int k = 0; k < STRETCH_MARKERS - 1; k++) {
+        if (k == MIDDLE) continue;
+        int i = 0;
+        while (i < N_RATIOS && !is_near(gap[k], ratios[i] * gap[MIDDLE], school)) i++;
+        if (i == N_RATIOS) return -1;
+        form = form * N_RATIOS + i;
+    }
+    return form;
 }
 
 void stretch_set_form(struct stretch_form *form, const struct wake *wake, const struct school *school, int j) {
@@ -78,31 +115,30 @@ void stretch_set_form(struct stretch_form *form, const struct wake *wake, const 
         const int first = j + 1 > n / 2 ? j + 1 - n / 2 : 0;
         const double own = wake->birth[j + 1] - wake->birth[j];
         double gap[STRETCH_MARKERS - 1];
-        bool is_smooth = first + n <= wake->n_vortex, is_known = form->n == n && form->middle == j - first;
+        bool is_smooth = first + n <= wake->n_vortex;
         for (int k = 0; k < n - 1 && is_smooth; k++) {
             gap[k] = wake->birth[first + k + 1] - wake->birth[first + k];
-            is_known = is_known && is_near(gap[k], form->gap[k], school);
             is_smooth = gap[k] > 0 && gap[k] >= least_ratio * own && gap[k] <= largest_ratio * own;
         }
         if (!is_smooth) continue;
 
-        // the form of the stretch before may serve again
         form->first = first;
-        if (is_known) return;
         form->n = n;
-        form->middle = j - first;
-        memcpy(form->gap, gap, (size_t)(n - 1) * sizeof *gap);
-        set_parts(form);
+        form->part = form->other;
+        const int known = n == STRETCH_MARKERS && j - first == MIDDLE ? find_form(gap, school) : -1;
+        if (known >= 0) {
+            form->part = wake->forms->part[known];
+        } else {
+            find_parts(n, gap, j - first, form->other);
+        }
         return;
     }
 
     // half of the stretch at both ends
+    static const parts half = {{-0.5, 0.5}, {-0.5, 0.5}};
     form->first = j;
     form->n = 2;
-    for (int a = 0; a < 2; a++) {
-        form->part[a][0] = -0.5;
-        form->part[a][1] = 0.5;
-    }
+    form->part = half;
 }
 
 // ---- the old part
@@ -170,7 +206,7 @@ void stretch_drop(struct wake *wake, const struct fish *fish, const struct schoo
 
 void stretch_restore(struct wake *wake, const struct fish *fish, const struct school *school) {
     const double longest = restored_over_dropped * most_spacing(fish, school);
-    struct stretch_form form = {.n = 0};
+    struct stretch_form form;
     double along[2];
     for (int j = 1; j < wake->n_old; j++) {
         // an even number of intervals: a marker was dropped in the middle

@@ -19,13 +19,14 @@ enum { STRETCH_MARKERS = 6 };
 /* The integrals of l_a dl_b over a stretch, for a polynomial l_a of each marker. */
 struct stretch_form {
     int first, n; /* the oldest of the markers; their number, 2, 4 or 6 */
-    int middle;   /* the stretch is this one of those between the markers; like gap, of 4 and 6 markers */
-    double gap[STRETCH_MARKERS - 1]; /* durations of the stretches between the markers, s */
-    double part[STRETCH_MARKERS][STRETCH_MARKERS];
+    const double (*part)[STRETCH_MARKERS];
+    double other[STRETCH_MARKERS][STRETCH_MARKERS]; /* part, if the durations are not on dyadic levels */
 };
 
-/* Set the form of stretch j. A form that starts as zero may serve one stretch after the other: equal durations share a
- * form. */
+/* The forms of all dyadic levels, for wakes. */
+const struct stretch_forms *stretch_forms_create(struct arena *arena);
+
+/* Set the form of stretch j. */
 void stretch_set_form(struct stretch_form *form, const struct wake *wake, const struct school *school, int j);
 
 /* At an event, with the newest marker at the tail: count the stretches that have become old; drop markers of the old

@@ -17,9 +17,12 @@
 #include "base/status.h"
 #include "fish/fish.h"
 
+struct stretch_forms;
+
 struct wake {
-    struct arena *arena;   /* of the owner: the state */
-    unsigned long version; /* counter of changes of the vortices below; identifies derived data */
+    struct arena *arena;               /* of the owner: the state */
+    const struct stretch_forms *forms; /* stretch.h; of all wakes */
+    unsigned long version;             /* counter of changes of the vortices below; identifies derived data */
     int n_vortex, capacity;
     double *x, *y;               /* position at the last event, m                     (n_vortex) */
     double *u, *v;               /* velocity W at the last event, m s-1               (n_vortex) */

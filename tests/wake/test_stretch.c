@@ -40,7 +40,7 @@ TEST(forms_are_exact_for_polynomials_at_any_spacing) {
     const int want[] = {6, 6, 6, 4, 2};  // next to the newest marker are fewer
     for (int i = 0; i < 6; i++) wake_release(wake, i, 0, 0, birth[i]);
     wake->n_old = 5;
-    struct stretch_form form = {.n = 0};
+    struct stretch_form form;
     for (int j = 0; j < 5; j++) {
         stretch_set_form(&form, wake, setup.school, j);
         assert_int_equal(form.n, want[j]);
@@ -68,7 +68,7 @@ TEST(forms_have_fewer_markers_near_a_jump_of_the_times) {
     const int want[] = {4, 4, 2, 2, 2, 4, 2, 2, 2, 4, 2};  // six only further away
     for (int i = 0; i < 12; i++) wake_release(wake, i, 0, i, birth[i]);
     wake->n_old = 10;
-    struct stretch_form form = {.n = 0};
+    struct stretch_form form;
     for (int j = 0; j < 11; j++) {
         stretch_set_form(&form, wake, setup.school, j);
         assert_int_equal(form.n, want[j]);
@@ -265,7 +265,7 @@ TEST(old_stretches_act_from_their_markers_in_every_view) {
 
         // the forms one by one
         double q[100] = {0}, line[2][100] = {{0}}, sum = 0;
-        struct stretch_form form = {.n = 0};
+        struct stretch_form form;
         for (int j = 0; j < wake->n_old; j++) {
             stretch_set_form(&form, wake, school, j);
             for (int a = 0; a < form.n; a++) {
