@@ -37,6 +37,9 @@ NAMES = {
 }
 
 
+# Quantities of the school in lines over a key: where the stability changes, and the error.
+STABILITY = {"steady_multiplier": (1, "steady_multiplier_error"), "steady_growth": (0, None)}
+
 # What a comparison of methods sets: its one axis, first the reference and how good that is, then each round of repeats.
 COMPARISON = ["solver_method", "solver_order", "solver_rtol", "solver_step"]
 N_REFERENCES = 2
@@ -693,16 +696,24 @@ def plot_lines(study, figure, asked=None, x=None, label=None, reference=None):
     stack = panels[:, 0]
     for axes, quantity in zip(panels.T.ravel(), [*quantities, *ratios]):
         value, title = study[quantity], study.label(quantity)
+        owners = [""] if value.ndim == 1 else names  # the school as a whole, or each fish
+        value = value.reshape(x.size, -1)
+        limit, error = STABILITY.get(quantity, (None, None))
         i = 0
         for words in dict.fromkeys(map(tuple, rest)):
-            rows = np.array([tuple(r) == words for r in rest]) & study.complete
-            for f, name in enumerate(names):
-                who = ", ".join([*words, *([name] if len(names) > 1 else [])])
+            rows = np.flatnonzero(np.array([tuple(r) == words for r in rest]) & study.complete)
+            rows = rows[np.argsort(x[rows], kind="stable")]
+            for f, name in enumerate(owners):
+                who = ", ".join([*words, *([name] if len(owners) > 1 else [])])
                 axes.plot(x[rows], value[rows, f], label=who or ("this program" if reference else None), **style(i))
+                if error:
+                    axes.errorbar(x[rows], value[rows, f], study[error][rows], ls="", color=COLOURS[i % 8], capsize=3, elinewidth=0.8)
                 i += 1
+        if limit is not None:
+            axes.axhline(limit, color="#888888", lw=0.8, zorder=1)
         if quantity in others:
             axes.plot(other_x, others[quantity], color="#888888", ls="--", lw=1.2, zorder=1)
-        axes.set_yscale("linear" if quantity in ratios else scale_of(value[study.complete]))
+        axes.set_yscale("linear" if quantity in ratios or quantity in STABILITY else scale_of(value[study.complete]))
         calm([axes], rounding=SAME)
         if quantity == "efficiency" and np.nanmin(value[study.complete]) < 0 < np.nanmax(value[study.complete]):
             axes.set_ylim(0, None)  # a body that brakes has none
@@ -805,9 +816,11 @@ def draw(path, figure, asked=None, relative=False, states=(), reference=None):
     over the first fish; states: files of steady formations to mark in it; reference: a table of other values, for lines."""
     study, quantity = Study(path), asked or "speed"
     drawn = study.data.variables.get(quantity)
-    if drawn is None or drawn.dimensions[1:] != ("fish",) or not study.is_number(quantity):
-        raise FileError(f"{path}: {quantity} is not a quantity of the fish in it, such as speed or cost_of_transport")
     over = map_axes(study)
+    is_line = not over and "level_value" not in study.data.variables and "key_name" not in study.data.variables
+    is_drawn = drawn is not None and (drawn.dimensions[1:] == ("fish",) or is_line and quantity in STABILITY)
+    if not is_drawn or not study.is_number(quantity):
+        raise FileError(f"{path}: {quantity} is not a quantity of the fish in it, such as speed or cost_of_transport")
     if reference and (over or study.is_comparison or not study.axes or any(hasattr(v, "refine") for axis in study.axes for v in axis)):
         raise CaseError(f"--reference: only lines over a swept key take it, and {path} is not drawn so")
     if relative and not over:

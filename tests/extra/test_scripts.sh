@@ -169,6 +169,10 @@ refuses 2 "--relative: only maps take it" plot.py study refine/study.nc --relati
 printf '%s\n' '# a theory' 'fish[0].wave.amplitude,shed_circulation' 0.2,0.1 0.4,0.2 >theory.csv
 tail -n +2 theory.csv >nameless.csv
 draws plot.py study line/study.nc --of shed_circulation --reference theory.csv -- line.png
+"$program" steady "$root/cases/flag.yaml" -q --threshold 'fish[*].body.modulus=50000:100000' --set 'fish[*].nodes=9' -o crossing \
+    >/dev/null 2>&1
+draws plot.py study crossing/study.nc --of steady_growth -- crossing.png
+refuses 4 "steady_growth is not a quantity of the fish" plot.py study map/study.nc --of steady_growth -- no.png
 refuses 4 "nameless.csv: the first line has to be a comment with the source" plot.py study line/study.nc --reference nameless.csv -- no.png
 refuses 2 "--reference: only lines over a swept key take it" plot.py study map/study.nc --reference theory.csv -- no.png
 "$program" study "$root/cases/formation.yaml" -q --set 'fish[*].nodes=5' --set 'fish[*].sheet_points=9' --set time.end=0.2 -o places \
