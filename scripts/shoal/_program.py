@@ -240,6 +240,47 @@ def steady(case, assignments=None, path=None, overwrite: bool = False, start=Non
         return Steady(json.loads(_call(_words("steady", arguments, assignments), file.path, _shows(progress), file.shown)))
 
 
+class Threshold(NamedTuple):
+    """The value of a key at which a steady state becomes unstable (doc/steady.md, Thresholds). The unit is that of the key."""
+
+    key: str
+    value: float
+    bar: float  #: error of the value: the sum of by_error and by_secant
+    by_error: float  #: error of the multiplier over slope
+    by_secant: float  #: length of the last secant
+    slope: float  #: of the modulus of the largest multiplier over the key, without a beat of the growth rate, s-1
+    unstable: str  #: "above" or "below"
+    kind: str  #: "real", "period doubling", "Neimark-Sacker"; without a beat "divergence", "flutter"
+    period: float  #: of the oscillation that grows, beats, without a beat s; 0: none
+    points: list  #: of the search: a dict of value, multiplier (or growth), error and period each; None: no steady state
+    path: str  #: of study.nc
+
+    def __float__(self):
+        return self.value
+
+    def __str__(self):
+        return f"{self.key} = {self.value:.6g} \N{PLUS-MINUS SIGN} {self.bar:.2g}: unstable {self.unstable} it ({self.kind})"
+
+
+def threshold(case, key: str, first: float, last: float, assignments=None, path=None, overwrite: bool = False, start=None,
+              progress: bool | None = None, folder=None) -> Threshold:
+    """Find the value of a key at which the steady state becomes unstable, on the way from first to last, by
+    `shoal steady --threshold`.
+
+    path: of the folder of the search (None: the name of the case with -threshold). overwrite: replace another search; else
+    states that are complete are kept. start: the result of a steady state to start from. Without a threshold there is a
+    SolverError, whose message has the multipliers found so far.
+    """
+    way = f"{os.fsdecode(text_of(key, 'key'))}={number_of(first, 'first')!r}:{number_of(last, 'last')!r}"
+    arguments = ["--json", "--threshold", way] + ([] if _shows(progress) else ["-q"]) + (["--force"] if overwrite else [])
+    for word, value in (("-o", path), ("--from", start)):
+        arguments += [] if value is None else [word, os.fsdecode(text_of(value, word))]
+    with _CaseFile(case, folder) as file:
+        found = json.loads(_call(_words("steady", arguments, assignments), file.path, _shows(progress), file.shown))
+    found["value"], found["path"] = found.pop("threshold"), found.pop("file")
+    return Threshold(**found)
+
+
 # ---- study
 
 

@@ -628,6 +628,23 @@ class Programs(unittest.TestCase):
         with self.assertRaisesRegex(AttributeError, "'cost' is none of .*cost_of_transport"):
             steady.cost
 
+    def test_a_threshold_has_a_bar(self):
+        flag, key = str(ROOT / "cases/flag.yaml"), "fish[*].body.modulus"
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            found = shoal.threshold(flag, key, 5e4, 1e5, {"fish[*].nodes": 9}, path="flutter")
+            self.assertEqual((found.kind, found.unstable, found.key), ("flutter", "below", key))
+            self.assertEqual(found.bar, found.by_error + found.by_secant)
+            self.assertTrue(5e4 < float(found) < 1e5 and 0 < found.bar < 10, found)
+            for side in (-1, 1):
+                state = shoal.steady(flag, {"fish[*].nodes": 9, key: found.value + side * 3 * found.bar}, overwrite=True)
+                self.assertEqual(state.is_stable, side > 0)
+            self.assertRegex(str(found), r"^fish\[\*\]\.body\.modulus = \d+.* \N{PLUS-MINUS SIGN} .*: unstable below it \(flutter\)$")
+            with self.assertRaisesRegex(shoal.SolverError, "(?s)stable at both.*found so far"):
+                shoal.threshold(flag, key, 9.5e4, 1e5, path="none")
+            with self.assertRaisesRegex(shoal.CaseError, "two different numbers"):
+                shoal.threshold(flag, key, 1e5, 1e5)
+
     def test_a_study_is_a_dataset(self):
         case = {**PAIR, "name": "swept", "sweep": [{"key": "fish[0].wave.frequency", "values": [0.9, 1.1]}]}
         with warnings.catch_warnings():
