@@ -166,3 +166,24 @@ void newton_way(struct arena *arena, int n, int n_memory, const double *response
     memcpy(way, change, (size_t)n * sizeof *way);
     if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, 1, matrix, n, pivot, way, n) != 0) memset(way, 0, (size_t)n * sizeof *way);
 }
+
+enum status newton_tangent(struct arena *arena, int n, const double *jacobian, double *tangent) {
+    ARENA(scratch, arena, "a tangent");
+    const int size = n + 1;
+    double *matrix, *way, square = 0;
+    lapack_int *pivot;
+    NEW(scratch, matrix, (size_t)size * (size_t)size);
+    NEW(scratch, way, size);
+    NEW(scratch, pivot, size);
+    for (int j = 0; j < size; j++) {
+        memcpy(matrix + (size_t)size * (size_t)j, jacobian + (size_t)n * (size_t)j, (size_t)n * sizeof *matrix);
+        matrix[n + size * j] = tangent[j];
+    }
+    way[n] = 1;
+    if (LAPACKE_dgesv(LAPACK_COL_MAJOR, size, 1, matrix, size, pivot, way, size) != 0) {
+        return status_fail(STATUS_SOLVER, "the branch has no single tangent");
+    }
+    for (int i = 0; i < size; i++) square += way[i] * way[i];
+    for (int i = 0; i < size; i++) tangent[i] = way[i] / sqrt(square);
+    return STATUS_OK;
+}

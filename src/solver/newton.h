@@ -37,4 +37,9 @@ enum status newton_multipliers(struct arena *arena, int n, int n_memory, const d
  * = change; 0 if 1 is a multiplier, when there is no fixed point. arena: for scratch. */
 void newton_way(struct arena *arena, int n, int n_memory, const double *response, const double *change, double *way);
 
+/* The unit tangent of the curve value(u) = 0 of n equations for n + 1 unknowns with this Jacobian (n, n + 1), by
+ * columns: it is orthogonal to the rows, and its scalar product with the tangent given, which it replaces, is
+ * positive (n + 1). Fails with STATUS_SOLVER if the curve branches. arena: for scratch. */
+enum status newton_tangent(struct arena *arena, int n, const double *jacobian, double *tangent);
+
 #endif

@@ -95,7 +95,9 @@ static enum status find_multipliers(struct run *run) {
     }
 
     found->error = larger(found->residual / nearest, speed_distance(run));
-    return steady_reason_check(&run->problem, nearest);
+
+    // at a fold, where a held state may be, a multiplier is 1 although the places are determined
+    return run->options->hold ? STATUS_OK : steady_reason_check(&run->problem, nearest);
 }
 
 // ---- the rows
@@ -199,6 +201,23 @@ static void warn_of_state(struct run *run) {
     }
 }
 
+static enum status hold(struct run *run) {
+    const struct steady_point *const point = run->options->hold;
+    double *change;
+    NEW(run->arena, change, point->n);
+    return steady_search_hold(&run->problem, point->value, change);
+}
+
+static void tell_point(const struct run *run, bool has_multipliers) {
+    struct steady_point *const point = run->options->found;
+    point->n = run->problem.n_unknowns;
+    NEW(point->arena, point->value, point->n);
+    steady_problem_read(&run->problem, point->value);
+    point->real = has_multipliers ? run->found.real[0] : NAN;
+    point->imaginary = has_multipliers ? run->found.imaginary[0] : NAN;
+    point->error = has_multipliers ? run->found.multiplier_error[0] : NAN;
+}
+
 static enum status steady_find(struct run *run, bool is_static) {
     run->found.error = NAN;
 
@@ -209,7 +228,7 @@ static enum status steady_find(struct run *run, bool is_static) {
         return write_if_due(run);
     }
 
-    TRY(steady_search_run(&run->problem));
+    TRY(run->options->hold ? hold(run) : steady_search_run(&run->problem));
     run->found.residual = steady_map_residual(&run->problem.map);
     run->found.stiffness = NAN;
 
@@ -217,7 +236,7 @@ static enum status steady_find(struct run *run, bool is_static) {
     const bool has_multipliers = run->values->steady.multipliers != NO && run->problem.n_unknowns > 0;
     double last = farthest;
     if (has_multipliers) TRY(find_multipliers(run));
-    for (int i = 0; i < CORRECTIONS && has_multipliers; i++) {
+    for (int i = 0; i < CORRECTIONS && has_multipliers && !run->options->hold; i++) {
         const double now = speed_distance(run);
         if (now <= far_away * run->values->steady.tolerance) break;
         TRY(steady_search_correct(&run->problem, now <= half * last ? run->multipliers.way : NULL));
@@ -226,6 +245,7 @@ static enum status steady_find(struct run *run, bool is_static) {
     }
     steady_modes_of_multipliers(&run->found, run->problem.map.period);
     run->found.n_beats = run->problem.map.n_beats;
+    if (run->options->found) tell_point(run, has_multipliers);
     return write_beats(run);
 }
 
@@ -245,6 +265,23 @@ enum status steady_refuse(const struct case_values *values) {
     const enum status status = refuse_school(school);
     fish_school_free(school);
     return status;
+}
+
+enum status steady_change(const struct case_values *values, int n, const double *value, double *change,
+                          const volatile sig_atomic_t *stop) {
+    ARENA(arena, NULL, "the change in a beat");
+    struct simulation *simulation;
+    struct steady_problem problem;
+    TRY(simulate_start(arena, &simulation, values, stop));
+    simulation->stop = stop;
+    TRY(refuse_school(simulation->school));
+    TRY(steady_problem_create(&problem, &values->steady, simulation));
+    if (problem.n_unknowns != n) {
+        return status_fail(STATUS_CASE,
+                           "the steady state has %d slow quantities here, and %d at the start of the branch",
+                           problem.n_unknowns, n);
+    }
+    return steady_search_hold(&problem, value, change);
 }
 
 static enum status find_and_write(struct run *run) {

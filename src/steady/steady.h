@@ -21,6 +21,15 @@ struct steady_progress {
 
 struct trace;
 
+/* A steady state as a point: the slow quantities of the case over their scales (steady_map.h), at the end of a beat,
+ * and the largest multiplier. */
+struct steady_point {
+    struct arena *arena; /* set by the caller: of value */
+    int n;
+    double *value;                 /* (n) */
+    double real, imaginary, error; /* the error is that of the absolute value; NaN: no multipliers */
+};
+
 struct steady_options {
     const char *path;      /* of the result file */
     const char *from;      /* steady result that supplies the initial speeds and positions; NULL: values of the case */
@@ -28,7 +37,10 @@ struct steady_options {
     double ratio;          /* distance of this case from from, over the distance of from from before */
     int overwrite;         /* replace an existing result */
     bool judges_stability; /* the caller asks for the stability: no warning if the state is unstable */
-    const char *command;   /* command line, for the history attribute of the file */
+    const struct steady_point *hold; /* hold these slow quantities until the wake has settled, instead of a search, and
+                                        take the result for the steady state; NULL: search */
+    struct steady_point *found;      /* gets the steady state; may be NULL */
+    const char *command;             /* command line, for the history attribute of the file */
     void (*progress)(const struct steady_progress *progress, void *data); /* may be NULL */
     void (*warn)(const char *line, void *data);                           /* may be NULL */
     void *data;
@@ -44,5 +56,11 @@ enum status steady_refuse(const struct case_values *values);
  * STATUS_STOPPED, the file contains the reason and no rows, unless an earlier result exists, which is kept. Without a
  * file: STATUS_CASE if the case can have no steady state, STATUS_FILE, STATUS_MEMORY. */
 enum status steady_run(const struct case_values *values, const struct steady_options *options);
+
+/* The change in a beat of the slow quantities of a case, over their scales, if they are held at these values until
+ * the wake has settled: 0 for a steady state. value, change: (n). Fails with STATUS_CASE (no steady state, or
+ * another number of slow quantities), STATUS_SOLVER, STATUS_CONTACT or STATUS_STOPPED. */
+enum status steady_change(const struct case_values *values, int n, const double *value, double *change,
+                          const volatile sig_atomic_t *stop);
 
 #endif

@@ -275,15 +275,21 @@ static enum status swim_freely(struct search *search, bool *is_steady) {
     return steady_map_return(problem->map.simulation, search->found);
 }
 
+// the beats in which the ramp of the muscle ends
+static int ramp_beats(const struct steady_map *map) {
+    const struct school *const school = map->simulation->school;
+    double ramp = 0;
+    for (int f = 0; f < school->n_fish; f++) ramp = fmax(ramp, school->fish[f].ramp);
+    return (int)fmin(1e6, ceil(ramp / map->period * (1 - 1e-9)));
+}
+
 static enum status run_search(struct search *search) {
     struct steady_problem *const problem = search->problem;
 
     // the first beats: the muscle ramp ends and the wake grows
     const struct steady_map *const map = &search->problem->map;
-    const struct school *const school = map->simulation->school;
-    double ramp = 0, change;
-    for (int f = 0; f < school->n_fish; f++) ramp = fmax(ramp, school->fish[f].ramp);
-    const int n_beats = (int)fmin(1e6, ceil(ramp / map->period * (1 - 1e-9))) + 2;
+    double change;
+    const int n_beats = ramp_beats(map) + 2;
     for (int i = 0; i < n_beats; i++) TRY(try_beat(search, speed_now(search), &change));
 
     // solve for a common speed of a formation at the initial places first, then for all unknowns
@@ -302,6 +308,28 @@ static enum status run_search(struct search *search) {
         TRY(swim_freely(search, &is_steady));
     }
 
+    return STATUS_OK;
+}
+
+/* Longest lifetime of a wake, in beats, for which unknowns are held, and the beats after it. Two plates in line
+ * whose wake lives for 3 beats: after 1, 2, 3, 5 and 8 more beats their places change by 7e-3, 4e-3, 2e-3, 1.5e-4
+ * and 1.1e-4 lengths a beat as soon as they are released. */
+static const double longest_wake = 30;
+enum { SETTLING_BEATS = 5 };
+
+enum status steady_search_hold(struct steady_problem *problem, const double *value, double *change) {
+    // until the wake of the first beats is gone, and what it did to the wakes of others: the number of beats must not
+    // depend on the values, whose differences give derivatives
+    const struct steady_map *const map = &problem->map;
+    const double lifetime = map->simulation->school->lifetime / map->period;
+    const int n_beats = ramp_beats(map) + SETTLING_BEATS + (int)ceil(smaller(lifetime, longest_wake));
+    for (int beat = 0; beat < n_beats; beat++) {
+        TRY(steady_problem_put(problem, value));
+        TRY(steady_map_beat(&problem->map, NULL, NULL));
+        if (problem->progress) problem->progress(problem, problem->data);
+    }
+    steady_problem_read(problem, change);
+    for (int i = 0; i < problem->n_unknowns; i++) change[i] -= value[i];
     return STATUS_OK;
 }
 

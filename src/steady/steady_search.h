@@ -12,4 +12,8 @@ enum status steady_search_run(struct steady_problem *problem);
  * advance the simulation to a state that repeats with the beat. Fails as steady_search_run. */
 enum status steady_search_correct(struct steady_problem *problem, const double *way);
 
+/* Hold the unknowns at these values, over their scales, until the wake has settled: every beat begins with them.
+ * change: of the unknowns in the last beat (n_unknowns each). Fails as simulate_step. */
+enum status steady_search_hold(struct steady_problem *problem, const double *value, double *change);
+
 #endif

@@ -150,3 +150,20 @@ TEST(a_map_that_keeps_what_it_gets_has_no_fixed_point) {
     NEAR(way[0], 0, 0, 0);
     NEAR(way[1], 0, 0, 0);
 }
+
+TEST(a_tangent_passes_a_fold_on_the_side_that_it_came_from) {
+    // the circle u^2 + p^2 = 1 with the Jacobian (2 u, 2 p): against the clock from (1, 0), where u has a fold in p at
+    // (0, 1)
+    double tangent[2] = {0, 1};
+    for (int i = 0; i <= 8; i++) {
+        const double angle = i * (M_PI / 8), jacobian[2] = {2 * cos(angle), 2 * sin(angle)};
+        assert_int_equal(newton_tangent(test_arena(), 1, jacobian, tangent), STATUS_OK);
+        NEAR(tangent[0], -sin(angle), 1e-14, 0);
+        NEAR(tangent[1], cos(angle), 1e-14, 0);
+    }
+
+    // two lines that cross have no single tangent
+    const double crossing[2] = {0, 0};
+    assert_int_equal(newton_tangent(test_arena(), 1, crossing, tangent), STATUS_SOLVER);
+    assert_non_null(strstr(status_message(), "tangent"));
+}
