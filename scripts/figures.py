@@ -157,6 +157,8 @@ FIGURES = {
        for axis in ("frequency", "amplitude", "thrust")},
     "steady_resonance": [f"shoal study {STUDY}steady_resonance.yaml -q -o resonance",
                          f"plot.py study resonance/study.nc --reference {STUDY}steady_resonance.csv -- steady_resonance.png"],
+    "branch": ["shoal steady cases/tandem_plates.yaml --continue fish[1].motion.heave=0.15:0.05 -q -o branch",
+               "plot.py study branch/study.nc branch.png"],
     "depth": [f"shoal study {STUDY}depth.yaml -q -o depth", "plot.py study depth/study.nc depth.png"],
     # one run at a time: its axis is time
     "stiffness": [f"shoal study {STUDY}stiffness.yaml -q -j 1 -o stiffness", "plot.py study stiffness/study.nc stiffness.png"],

@@ -14,6 +14,9 @@
                                     thrust, power and efficiency; of bodies that a heave drives the efficiency in place of the
                                     Strouhal number; of bodies without a beat drag, lift and deflection; with
                                     relative_to the same over the reference beside it
+    a branch of steady states       speed, and the places behind the first fish, and the largest multiplier over the key: solid
+                                    where stable, dashed where unstable, dotted where undecided, with folds and losses of
+                                    stability
     a comparison of methods         error against wall time and evaluations
 """
 
@@ -732,6 +735,66 @@ def plot_lines(study, figure, asked=None, x=None, label=None, reference=None):
         legend_above(stack[0], 2)
 
 
+# Verdicts on stability: whether |multiplier| - 1 exceeds its error, and the lines of branches.
+VERDICTS = {-1: ("stable", "-"), 0: ("undecided", ":"), 1: ("unstable", "--")}
+
+
+def plot_branch(study, figure, asked=None):
+    """The points of `shoal steady --continue` in their order: a quantity of the fish, the places of followers, the largest
+    multiplier; the line of a step is that of the less stable of its ends."""
+    from scipy.interpolate import PchipInterpolator
+
+    # monotone cubics of the arclength between the points: at a fold the key turns smoothly
+    key, arclength = study.axes[0][0], study["arclength"]
+    x, names = study[key.name], list(study["fish"])
+
+    def between(values, i):
+        at = np.linspace(*arclength[i:i + 2], 20)
+        return PchipInterpolator(arclength, values)(at) if np.isfinite(values).all() else np.full(at.shape, np.nan)
+
+    size, error = study["steady_multiplier"], study["steady_multiplier_error"]
+    verdict = np.where(np.abs(size - 1) <= error, 0, np.sign(size - 1)).astype(int)
+    rows = [(asked or "steady_speed", study[asked or "steady_speed"])]
+    if not asked and len(names) > 1 and np.isfinite(study["steady_place"][:, 1:]).all():
+        behind = -study["steady_place"][:, :, 0]
+        behind[:, 0] = np.nan
+        rows.append(("distance behind [m]", behind))
+    figure.set_figheight(1.4 + 1.3 * (len(rows) + 1))
+    *stack, last = figure.subplots(len(rows) + 1, 1, sharex=True)
+    for axes, (quantity, values) in zip(stack, rows):
+        is_place = quantity.startswith("distance")
+        for f, name in enumerate(names):
+            for i in range(x.size - 1):
+                ends = sorted(verdict[i:i + 2])
+                dashes = VERDICTS[ends[0] if ends[0] == ends[1] or ends[0] < 0 < ends[1] else 0][1]
+                axes.plot(between(x, i), between(values[:, f], i), ls=dashes, color=COLOURS[f % 8], lw=1.3)
+            if len(names) > 1 and not is_place:
+                axes.plot([], [], color=COLOURS[f % 8], lw=1.3, label=name)
+        axes.set_ylabel((quantity if is_place else study.label(quantity)).replace(" [", "\n["))
+    last.errorbar(x, size, error, color="black", ls="", marker="o", ms=3, capsize=2, elinewidth=0.8)
+    for i in range(x.size - 1):
+        last.plot(between(x, i), between(size, i), color="black", lw=0.8)
+    last.axhline(1, color="#888888", lw=0.8)
+    last.set_ylabel("largest\nmultiplier")
+    for axes in (*stack, last):
+        axes.grid(lw=0.3, color=GRID)
+    last.set_xlabel(study.label(key.name))
+
+    marks = {}
+    for i, label in enumerate(str(text).strip("\0") for text in study["label"]):
+        if not label:
+            continue
+        marks.setdefault(label, MARKS[len(marks) % 8])
+        for axes, (_, values) in zip(stack, rows):
+            axes.plot(np.full(len(names), x[i]), values[i], ls="", marker=marks[label], ms=6, mfc="gold", mec="black", zorder=4)
+        last.plot(x[i], size[i], ls="", marker=marks[label], ms=6, mfc="gold", mec="black", zorder=4)
+    for value in sorted(set(verdict)):
+        stack[0].plot([], [], ls=VERDICTS[value][1], color="#444444", lw=1.3, label=VERDICTS[value][0])
+    for label, mark in marks.items():
+        stack[0].plot([], [], ls="", marker=mark, ms=6, mfc="gold", mec="black", label=label)
+    legend_above(stack[0], 3)
+
+
 def plot_comparison(study, figure):
     """Work and precision: the error of the tail against wall time and evaluations, a line per method."""
     repeats = {}  # of each setting, in the order of the first round
@@ -855,6 +918,8 @@ def draw(path, figure, asked=None, relative=False, states=(), reference=None):
         return plot_convergence(study, refined[0], figure, asked)
     if "solver_method" in study.data.variables and study.is_number(keys[0].name):
         return plot_methods(study, keys[0].name, figure)
+    if "label" in study.data.variables:
+        return plot_branch(study, figure, asked)
     if is_place(keys):
         x, y = places(study, keys[0])
         return plot_lines(study, figure, asked, *((x, PLACE[0]) if np.ptp(x) >= np.ptp(y) else (y, PLACE[1])))

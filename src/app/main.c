@@ -41,10 +41,10 @@ static const struct command commands[] = {
     {"steady",
      "CASE",
      "find the steady swimming state and its stability",
-     {'o', OPTION_FROM, OPTION_THRESHOLD, OPTION_FORCE, OPTION_STRICT, OPTION_SET, OPTION_THREADS, OPTION_MAX_WALL,
-      OPTION_TRACE, OPTION_JSON, 'q', 'h'},
+     {'o', OPTION_FROM, OPTION_THRESHOLD, OPTION_CONTINUE, OPTION_FORCE, OPTION_STRICT, OPTION_SET, OPTION_THREADS,
+      OPTION_MAX_WALL, OPTION_TRACE, OPTION_JSON, 'q', 'h'},
      "file of the result, with the last beats (default: output.file of the case, or the name of the case with .nc); "
-     "with --threshold a folder (default: the name of the case with -threshold)",
+     "with --threshold or --continue a folder (default: the name of the case with -threshold or -branch)",
      main_steady},
     {"study",
      "CASE",

@@ -1,4 +1,4 @@
-/* main_branch.c: shoal steady --threshold: steady states along a key. */
+/* main_branch.c: shoal steady --threshold and --continue: steady states along a key. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "case/sweep.h"
+#include "study/branch.h"
 #include "study/threshold.h"
 
 /* What the searches report to. */
@@ -121,6 +122,7 @@ enum status main_threshold(const struct request *request) {
     struct threshold_search search;
     struct threshold found;
     struct branch_teller teller = {.n_warnings = 0};
+    if (request->follow) return status_fail(STATUS_CASE, "--continue and --threshold exclude each other: give one");
     if (request->trace) return status_fail(STATUS_CASE, "--trace records one search: leave out --threshold");
     TRY(read_way(arena, "--threshold", request->threshold, &options.key, &options.from, &options.to));
     TRY(main_read_case(request, &values));
@@ -146,4 +148,38 @@ enum status main_threshold(const struct request *request) {
     if (!request->strict || teller.n_warnings == 0) return STATUS_OK;
     return status_fail(STATUS_MISSED, "%s: with --strict its %d warning%s", file, teller.n_warnings,
                        teller.n_warnings > 1 ? "s are errors" : " is an error");
+}
+
+enum status main_continue(const struct request *request) {
+    struct arena *const arena = request->arena;
+    struct case_values values;
+    struct branch_options options = {.case_path = request->positional,
+                                     .n_assignments = request->n_assignments,
+                                     .assignments = request->assignments,
+                                     .start = request->from,
+                                     .as_json = request->json,
+                                     .force = request->force,
+                                     .command = request->command_line,
+                                     .progress = request->quiet ? NULL : say_progress_steady,
+                                     .note = request->quiet ? NULL : branch_note,
+                                     .stop = main_stop_signal()};
+    struct branch_teller teller = {.n_warnings = 0};
+    if (request->trace) return status_fail(STATUS_CASE, "--trace records one search: leave out --continue");
+    if (request->strict) return status_fail(STATUS_CASE, "--strict is for one state: leave out --continue");
+    TRY(read_way(arena, "--continue", request->follow, &options.key, &options.from, &options.to));
+    TRY(main_read_case(request, &values));
+    if (!request->quiet && *values.notes) say_line(stderr, "%s\n", values.notes);
+    TRY(sweep_refuse(&values));
+    options.folder = request->output ? request->output : arena_text(arena, "%s-branch", values.name);
+    options.data = &teller;
+    TRY(parallel_start_threads(values.school.threads));
+    if (request->max_wall) TRY(main_limit_wall_time(request->max_wall));
+    main_catch_signals();
+
+    struct say_page page;
+    say_progress_start(&teller.progress);
+    TRY(say_begin(&page));
+    const enum status status = branch_follow(&options, page.stream);
+    say_progress_end(&teller.progress);
+    return say_end(&page, request->quiet && !request->json ? NULL : stdout, status);
 }

@@ -21,6 +21,7 @@ enum status main_resume(const struct request *request);
 enum status main_demo(const struct request *request);
 enum status main_steady(const struct request *request);
 enum status main_threshold(const struct request *request);
+enum status main_continue(const struct request *request);
 enum status main_study(const struct request *request);
 enum status main_error(const struct request *request);
 enum status main_gather(const struct request *request);

@@ -56,6 +56,8 @@ static const struct option_help all_options[] = {
      "start from the speeds and positions of another steady state (default: those of the case)"},
     {OPTION_THRESHOLD, "threshold", "KEY=FROM:TO",
      "find the value of a key, between two values, at which the state becomes unstable: fish[*].motion.heave=0.2:0.1"},
+    {OPTION_CONTINUE, "continue", "KEY=FROM:TO",
+     "follow the steady states while a key changes, through folds, and label folds and losses of stability"},
     {OPTION_CHECKPOINT_AT, "checkpoint-at", "LIST",
      "additional times of checkpoints in s, separated by commas (see time.checkpoint_interval)"},
     {OPTION_MAX_WALL, "max-wall", "HH:MM:SS",
@@ -183,6 +185,7 @@ static void take_option(struct request *request, int code, char *argument) {
         case OPTION_MODELS: request->models = 1; break;
         case OPTION_SENSITIVITY: request->sensitivity = argument ? argument : ""; break;
         case OPTION_UNCERTAIN: request->uncertain[request->n_uncertain++] = argument; break;
+        case OPTION_CONTINUE: request->follow = argument; break;
         case OPTION_FROM: request->from = argument; break;
         case OPTION_THRESHOLD: request->threshold = argument; break;
         case OPTION_AT: request->at = argument; break;

@@ -44,7 +44,8 @@ enum option_code {
     OPTION_NO_CONFIRM,
     OPTION_MODELS,
     OPTION_SENSITIVITY,
-    OPTION_UNCERTAIN
+    OPTION_UNCERTAIN,
+    OPTION_CONTINUE
 };
 
 /* The parsed command line. A string is NULL if the option is absent. */
@@ -72,7 +73,7 @@ struct request {
     int n_uncertain;
     const char **uncertain; /* of --uncertain, "KEY=PART" */
     const char *from;
-    const char *threshold; /* "KEY=FROM:TO" */
+    const char *threshold, *follow; /* of --threshold and --continue, "KEY=FROM:TO" */
     const char *at, *grid, *box;
     const char *vtk;
     const char *positional;

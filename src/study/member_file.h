@@ -34,6 +34,9 @@ struct member_file {
     const char *study;     /* merged text of the study, "" without a study */
     const char *effective; /* effective case of the member */
     const char *source;    /* the program and libraries that wrote the file */
+    const char *label;     /* of a point of a branch (branch.h): "", "fold" and so on; NULL: no branch */
+    const char *file;      /* of a point of a branch: name of the file in the folder */
+    double arclength;      /* of a point of a branch: distance along the branch from its first point */
     int n_fish;
     double *value; /* see member_file_value; NaN: unknown                       (n quantities, n_fish, xy) */
 };

@@ -32,7 +32,20 @@ static const char *const dimension_names[N_DIMENSIONS] = {"member", "group", "po
                                                           "fish",   "xy",    "level", "text"};
 
 /* The rows of the table, in this order. */
-enum { MEMBER, STATUS, WARNINGS, FISH_NAME, SWEPT_KEY, QUANTITY, REFERENCE, RATIO, N_MEMBER_ROWS };
+enum {
+    MEMBER,
+    STATUS,
+    WARNINGS,
+    LABEL,
+    MEMBER_FILE,
+    ARCLENGTH,
+    FISH_NAME,
+    SWEPT_KEY,
+    QUANTITY,
+    REFERENCE,
+    RATIO,
+    N_MEMBER_ROWS
+};
 enum { LEVEL_VALUE = N_MEMBER_ROWS, LEVEL_SIZE, GROUP_MEMBER, DESIGN_ORDER, N_LEVEL_ROWS };
 enum { DIFFERENCE = N_LEVEL_ROWS, COARSE_ORDER, ORDER, LIMIT, ERROR, FLAG, N_ORDER_ROWS };
 enum { POINT_MEMBER = N_ORDER_ROWS, KEY_NAME, KEY_REASON, KEY_LEVELS, KEY_STATED, KEY_IS_CHOICE, N_NAME_ROWS };
@@ -55,11 +68,12 @@ enum {
     N_ROWS
 };
 
-/* Existence of the variables of a row: once, for each swept key, for each quantity of members; with `relative_to`, and
- * then for each number of members; with a refined axis, and for each quantity with orders; in an error study, in a
- * sweep of errors, and for each quantity with errors; if there are inputs, for each quantity. */
+/* Existence of the variables of a row: once, in a branch, for each swept key, for each quantity of members; with
+ * `relative_to`, and then for each number of members; with a refined axis, and for each quantity with orders; in an
+ * error study, in a sweep of errors, and for each quantity with errors; if there are inputs, for each quantity. */
 enum existence {
     ALWAYS,
+    IN_BRANCH,
     BY_SWEPT_KEY,
     BY_QUANTITY,
     IN_RATIOS,
@@ -85,6 +99,10 @@ static const struct row {
     {"member", "1", NETCDF_INT, ALWAYS, M, "number of the member"},
     {"status", "", NETCDF_TEXT, ALWAYS, M | T, "status of the member at the end"},
     {"warnings", "", NETCDF_TEXT, ALWAYS, M | T, "warnings about the result of the member, one per line"},
+    {"label", "", NETCDF_TEXT, IN_BRANCH, M | T,
+     "what a branch does at this point: fold, or loss of stability; or empty"},
+    {"file", "", NETCDF_TEXT, IN_BRANCH, M | T, "name of the file of the steady state in the folder"},
+    {"arclength", "1", NETCDF_DOUBLE, IN_BRANCH, M, "distance along a branch from its first point (doc/steady.md)"},
     {"fish", "", NETCDF_TEXT, ALWAYS, F | T, "name of the fish"},
     {"%s", NULL, NETCDF_DOUBLE, BY_SWEPT_KEY, M, "%s"},
     {"%s", NULL, NETCDF_DOUBLE, BY_QUANTITY, M | F | X, "%s"},
@@ -212,8 +230,9 @@ static void list_variables(struct contents *contents) {
     const bool has_orders = contents->orders->n_groups > 0, has_ratios = sweep_member_reference(study, 0) >= 0;
     for (int r = 0; r < N_ROWS; r++) {
         const enum existence existence = rows[r].existence;
-        const bool is_one = existence == ALWAYS || (existence == IN_RATIOS && has_ratios) ||
-                            (existence == IN_ORDERS && has_orders) || (existence == IN_ERRORS && contents->errors) ||
+        const bool is_one = existence == ALWAYS || (existence == IN_BRANCH && contents->member[0].label) ||
+                            (existence == IN_RATIOS && has_ratios) || (existence == IN_ORDERS && has_orders) ||
+                            (existence == IN_ERRORS && contents->errors) ||
                             (existence == IN_POINTS && contents->length[BY_POINT] > 0);
         if (is_one) add_variable(contents, (struct variable){.row = r});
         for (int a = 0; a < study->n_axes && existence == BY_SWEPT_KEY; a++) {
@@ -264,6 +283,9 @@ static struct value member_value(const struct contents *contents, const struct v
         case MEMBER: value.number = i[0]; break;
         case STATUS: value.text = member->status; break;
         case WARNINGS: value.text = member->warnings ? member->warnings : ""; break;
+        case LABEL: value.text = member->label; break;
+        case MEMBER_FILE: value.text = member->file; break;
+        case ARCLENGTH: value.number = member->arclength; break;
         case FISH_NAME: value.text = study->school.fish[i[0]].name; break;
         case SWEPT_KEY: {
             const struct sweep_axis *const axis = &study->sweep[v->axis];
@@ -571,6 +593,11 @@ static enum status study_file_read_members(struct reading *reading) {
         TRY(netcdf_read_text(reader, "warnings", slice, warnings));
         member->status = status;
         member->warnings = warnings;
+        if (!netcdf_has(reader, "label")) continue;
+        char *label;
+        NEW(arena, label, reading->n_text + 1);
+        TRY(netcdf_read_text(reader, "label", slice, label));
+        member->label = label;
     }
 
     // quantities; those of comparisons exist in comparisons only

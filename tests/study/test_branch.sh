@@ -1,0 +1,120 @@
+#!/usr/bin/env bash
+# shoal steady --continue follows a branch through a fold, keeps what it finds on disk, and says where it ends.
+#
+#   tests/study/test_branch.sh PROGRAM
+# shellcheck source=tests/checks.sh
+. "$(dirname "$0")/../checks.sh"
+
+# A follower that heaves less and less falls back, until at a fold its place is gone. Beyond the fold the branch returns: a
+# place farther behind, from which the follower leaves.
+key='fish[1].motion.heave'
+cat >plates.yaml <<'end'
+format: 1
+time: {end: 20, shedding_interval: 0.05, output_interval: 0.1}
+fluid: {density: 1, viscosity: 2e-3}
+wake: {lifetime: 3, smoothing: 0.2}
+steady: {formation: true, tolerance: 1e-3}
+defaults:
+  fish:
+    nodes: 4
+    sheet_points: 13
+    force: pressure
+    pressure: {span: infinite, suction_limit: 0}
+    drag: {skin: laminar}
+    start: {speed: 3.8}
+    wave: {amplitude: 0, frequency: 0}
+    body: {profile: uniform, thickness: 0.05, depth: 1, density: 20, modulus: 1e6}
+    motion: {prescribed: all, surge: free, heave: 0.15, frequency: 1}
+fish:
+  - {name: leader}
+  - {name: follower, start: {position: [5.5, 0]}, motion: {heave: 0.09}}
+end
+
+# ---- the branch
+
+run steady plates.yaml --continue "$key=0.085:0.05"
+check the_branch_ends_where_it_began_beyond_a_fold test "$code" = 0
+check the_table_names_the_fold test "$(grep -c ', fold$' out)" = 1
+check every_state_is_told_when_it_is_found grep -qF "$key = 0.085: largest multiplier 0.9" err
+cat >look.py <<'end'
+import sys
+
+import netCDF4
+import numpy as np
+
+data = netCDF4.Dataset("plates-branch/study.nc")
+key, size = data["fish1_motion_heave"][:], data["steady_multiplier"][:]
+label, place = data["label"][:], data["steady_place"][:, 1, 0]
+fold = list(label).index("fold")
+way = np.diff(data["arclength"][:])
+angle = [float(netCDF4.Dataset(f"plates-branch/{name}")["steady_multiplier"][0, 1]) for name in data["file"][:]]
+checks = {
+    "both ends are at FROM": abs(key[0] - 0.085) < 1e-12 and abs(key[-1] - 0.085) < 1e-12,
+    "the fold has the least value": key[fold] <= key.min() + 0.001 * 0.035,
+    "the fold is where it was found with twice the events": abs(key[fold] - 0.0785) < 0.002,
+    "before the fold the states are stable": (size[: fold - 1] < 1).all(),
+    "beyond it they are not": (size[fold + 2 :] > 1).all(),
+    "the multiplier of a fold is 1": abs(size[fold] - 1) <= data["steady_multiplier_error"][fold],
+    "before the fold disturbances oscillate, beyond it they do not": angle[0] != 0 and angle[-1] == 0,
+    "the follower falls back all the way": (np.diff(place) < 0).all(),
+    "the arclength grows": (way > 0).all(),
+    "every state is a file": all(netCDF4.Dataset(f"plates-branch/{name}").run_status == "complete" for name in data["file"][:]),
+}
+for words, holds in checks.items():
+    if not holds:
+        print(words, key, size, place, label, file=sys.stderr)
+sys.exit(not all(checks.values()))
+end
+check_with "import netCDF4" the_branch_has_its_fold_and_its_stability /usr/bin/python3 look.py
+
+# the state on the unstable side is the one that a search from there finds
+last=$(sed -n 's/.*\(state-[0-9]*\.nc\).*/\1/p' <<<"$(ncdump -v file plates-branch/study.nc)" | tail -n 1)
+run steady plates.yaml --from "plates-branch/$last" --set "$key=0.085" -o again.nc --force
+cat >same.py <<'end'
+import sys
+
+import netCDF4
+
+one, other = (netCDF4.Dataset(path)["steady_place"][1, 0] for path in sys.argv[1:])
+sys.exit(not abs(one - other) < 5e-3)
+end
+check a_search_finds_the_unstable_state_too test "$code" = 0
+check_with "import netCDF4" and_finds_it_at_the_same_place /usr/bin/python3 same.py "plates-branch/$last" again.nc
+
+run info plates-branch/study.nc
+check info_summarises_a_branch grep -qF "$key" out
+run steady plates.yaml --continue "$key=0.085:0.084" --json -q -o json
+check json_has_the_points eval 'test "$code" = 0 && /usr/bin/python3 -c "
+import json
+found = json.load(open(\"out\"))
+assert found[\"key\"] == \"fish[1].motion.heave\" and len(found[\"points\"]) >= 2
+assert found[\"points\"][-1][\"value\"] == 0.084 and found[\"points\"][0][\"multiplier\"] < 1"'
+
+# ---- an end before the end
+
+refused a_branch_is_not_overwritten 4 'plates-branch/study.nc exists: replace the branch with --force' \
+    steady plates.yaml --continue "$key=0.085:0.05"
+run steady plates.yaml --continue "$key=0.085:0.09" --force --max-wall 00:00:01
+check a_limit_ends_it_with_what_was_found eval 'test "$code" = 75 && has err "stopped after --max-wall"'
+
+# a beat of another length has no whole number of events
+run steady plates.yaml --continue 'fish[*].motion.frequency=1:0.1' -o slow
+check an_end_without_a_state_says_how_far_it_came eval 'test "$code" = 2 && has err "events" &&
+    has err "; 1 steady state was found, at fish[*].motion.frequency = 1 with" && test -s slow/study.nc'
+
+# ---- bad input
+
+refused the_ends_differ 2 'expects KEY=FROM:TO with two different numbers' steady plates.yaml --continue "$key=0.1:0.1"
+refused an_end_is_a_number 2 'expects KEY=FROM:TO with two different numbers' steady plates.yaml --continue "$key=0.1:nan"
+refused both_ends_are_given 2 'expects KEY=FROM:TO with two different numbers' steady plates.yaml --continue "$key=0.1"
+refused the_key_exists 2 'fish[1].motion.haeve' steady plates.yaml --continue 'fish[1].motion.haeve=0.1:0.2'
+refused both_ends_are_allowed 2 'length' steady plates.yaml --continue 'fish[1].length=1:-1'
+refused a_case_without_a_beat_has_no_branch 2 'no slow quantities' steady "$root/cases/flag.yaml" --continue \
+    'fish[*].body.modulus=5e4:1e5'
+refused multipliers_are_needed 2 'set steady.multipliers to true' steady plates.yaml --continue "$key=0.085:0.05" \
+    --set steady.multipliers=false -o none
+refused a_branch_is_no_threshold 2 'exclude each other' steady plates.yaml --continue "$key=0.085:0.05" \
+    --threshold "$key=0.085:0.05"
+refused a_trace_is_of_one_search 2 '--trace' steady plates.yaml --continue "$key=0.085:0.05" --trace t.csv
+
+finish
