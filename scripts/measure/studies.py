@@ -140,7 +140,8 @@ def share(covered):
     return f"{sum(covered)} of {len(covered)} ({100 * sum(covered) / len(covered):.0f} %)" if covered else "none"
 
 
-@table("cases", "covered", "not flagged", "bar over error, median", "flagged", "bar over error", "below 1e-4, not counted")
+@table("cases", "inside", "not flagged", "bar over error, median", "error over bar, largest", "flagged", "median", "largest",
+       "below 1e-4, not counted")
 def error_coverage(bench):
     """how many true errors are within their bars, on cases that were not used to choose the rule (15 minutes)"""
     kinds = {}
@@ -153,7 +154,8 @@ def error_coverage(bench):
         for is_flagged in (False, True):
             part = [one[:2] for one in counted if one[2] == is_flagged]
             ratios = [bar / error for bar, error in part if error > 0]
-            cells += [share([error <= bar for bar, error in part]), f"{np.median(ratios):.1f}" if ratios else ""]
+            cells += [share([error <= bar for bar, error in part]), f"{np.median(ratios):.1f}" if ratios else "",
+                      f"{1 / min(ratios):.2f}" if ratios else ""]
         yield kind, share([error <= bar for bar, error, _ in counted]), *cells, len(found) - len(counted)
 
 
