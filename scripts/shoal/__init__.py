@@ -12,6 +12,7 @@ These functions do what the commands of the program do:
     steady(case)    steady state, stability       study(case)        all members of a sweep; gather(folder)
     error(case, of) numbers with error bars       compare(case)      integration methods by error and cost
     threshold(case, key, first, last)             value of a key at which the state becomes unstable
+    branch(case, key, first, last)                steady states while a key changes, through folds
     optimize(case, quantity, over)                numbers of a case that make a quantity least or largest
     check(case)     errors and cost of a case     keys(word)         keys of cases, variables of results
     view(result)    a page for a browser          animate(result)    a movie
@@ -41,7 +42,7 @@ from . import _library
 from ._environments import SchoolEnv, SwimEnv, SwimVectorEnv
 from ._library import CaseError, Error, FileError, SolverError, version
 from ._program import (
-    CaseWarning, Check, Estimate, Page, Steady, Threshold, animate, check, compare, error, export, field, gather, keys, resume,
+    CaseWarning, Check, Estimate, Page, Steady, Threshold, animate, branch, check, compare, error, export, field, gather, keys, resume,
     steady, study, threshold, view,
 )
 from ._optimize import Optimum, optimize
@@ -49,7 +50,7 @@ from ._results import grid, open, periods  # noqa: A004 - shoal.open, as gzip.op
 from ._run import Run, Variable, load, run, variables
 
 # Not __all__: help(shoal) would then print all classes with what they inherit, thousands of lines.
-_PUBLIC = ["run", "resume", "steady", "threshold", "study", "gather", "error", "optimize", "compare", "check", "keys", "view", "animate",
+_PUBLIC = ["run", "resume", "steady", "threshold", "branch", "study", "gather", "error", "optimize", "compare", "check", "keys", "view", "animate",
            "field", "export", "open", "grid", "periods", "load", "variables", "version", "Run", "Variable", "Check", "Steady",
            "Threshold", "Estimate", "Optimum", "Page", "SwimEnv", "SwimVectorEnv", "SchoolEnv", "Error", "CaseError", "FileError", "SolverError",
            "CaseWarning", "__version__"]

@@ -281,6 +281,27 @@ def threshold(case, key: str, first: float, last: float, assignments=None, path=
     return Threshold(**found)
 
 
+def branch(case, key: str, first: float, last: float, assignments=None, path=None, overwrite: bool = False, start=None,
+           progress: bool | None = None, folder=None):
+    """Follow the steady states of a case while a key goes from first to last, through folds, by `shoal steady --continue`.
+
+    Returns study.nc as an xarray.Dataset, whose members are the states in the order of the branch: the swept key is a
+    coordinate, label names folds and losses of stability, and file the results of the states (doc/steady.md, Branches).
+
+    path: of the folder (None: the name of the case with -branch). overwrite: replace another branch. start: the result of a
+    steady state to start from.
+    """
+    way = f"{os.fsdecode(text_of(key, 'key'))}={number_of(first, 'first')!r}:{number_of(last, 'last')!r}"
+    if path is None:
+        name = case.get("name", "run") if isinstance(case, Mapping) else os.path.splitext(os.path.basename(os.fspath(case)))[0]
+        path = f"{name}-branch"
+    arguments = ["--continue", way, "-o", _path(path, "path")] + ([] if _shows(progress) else ["-q"]) + (["--force"] if overwrite else [])
+    arguments += [] if start is None else ["--from", _path(start, "start")]
+    with _CaseFile(case, folder) as file:
+        _call(_words("steady", arguments, assignments), file.path, _shows(progress), file.shown)
+    return _open_study(_path(path, "path"))
+
+
 # ---- study
 
 

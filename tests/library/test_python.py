@@ -628,6 +628,25 @@ class Programs(unittest.TestCase):
         with self.assertRaisesRegex(AttributeError, "'cost' is none of .*cost_of_transport"):
             steady.cost
 
+    def test_a_branch_is_a_dataset_in_its_order(self):
+        plate = {"nodes": 4, "sheet_points": 13, "force": "pressure", "pressure": {"span": "infinite", "suction_limit": 0},
+                 "drag": {"skin": "laminar"}, "start": {"speed": 3.8}, "wave": {"amplitude": 0, "frequency": 0},
+                 "body": {"profile": "uniform", "thickness": 0.05, "depth": 1, "density": 20, "modulus": 1e6},
+                 "motion": {"prescribed": "all", "surge": "free", "heave": 0.15, "frequency": 1}}
+        case = {"format": 1, "name": "plate", "time": {"end": 5, "shedding_interval": 0.05}, "wake": {"lifetime": 3, "smoothing": 0.2},
+                "fluid": {"density": 1, "viscosity": 2e-3}, "steady": {"tolerance": 1e-3}, "fish": [{"name": "plate", **plate}]}
+        key = "fish[*].motion.heave"
+        found = shoal.branch(case, key, 0.15, 0.12)
+        heave = found["motion_heave"].values
+        self.assertEqual((heave[0], heave[-1]), (0.15, 0.12))
+        self.assertTrue((np.diff(heave) < 0).all() and (np.diff(found["arclength"]) > 0).all(), found)
+        self.assertTrue((found["steady_multiplier"] < 1).all() and (np.diff(found["steady_speed"][:, 0]) < 0).all(), found)
+        state = shoal.steady(case, {key: 0.12}, overwrite=True)
+        self.assertLess(abs(float(found["steady_speed"][-1, 0]) / state.speed[0] - 1), 2e-3)
+        self.assertEqual(found.attrs["path"], os.path.join("plate-branch", "study.nc"))
+        with self.assertRaisesRegex(shoal.FileError, "overwrite|--force"):
+            shoal.branch(case, key, 0.15, 0.12)
+
     def test_a_threshold_has_a_bar(self):
         flag, key = str(ROOT / "cases/flag.yaml"), "fish[*].body.modulus"
         with warnings.catch_warnings():
