@@ -28,9 +28,12 @@ enum { MOST_POINTS = 60 };
 /* The secants end if the last one is shorter than this part of the error by the multiplier, or of the whole way. */
 static const double part_of_error = 0.25, part_of_way = 1e-4;
 
-/* The excess jumps if it still changes by this part of its first change when the secants end, and by more than its
- * errors. */
-static const double part_of_jump = 0.1;
+/* A secant steeper than this multiple of the first one may cross a jump between two branches: then bisections follow
+ * until the sides are neighbours, between which the excess may still change by this part of its first change. */
+static const double steep = 20, part_of_jump = 0.01;
+
+/* A bisection also follows if one side stays so often. */
+enum { MOST_STAYS = 3 };
 
 /* Two points give a slope if their excesses differ by this multiple of the larger error. */
 static const double distinct = 4;
@@ -118,25 +121,25 @@ enum status threshold_solve(struct arena *arena, struct threshold_search *search
 
     // secants between the two sides; the weight of a side that stays twice is halved (Illinois)
     const double shortest = part_of_way * fabs(search->to - search->from);
-    const double jump = part_of_jump * fabs(side[1].excess - side[0].excess);
+    const double first_change = fabs(side[1].excess - side[0].excess);
+    const double first_slope = first_change / fabs(side[1].value - side[0].value);
     double weight[2] = {1, 1};
-    int stayed = -1;
+    int stayed = -1, n_stays = 0;
     for (;;) {
         const int near = fabs(side[1].excess) < fabs(side[0].excess);
-        const double low = weight[0] * side[0].excess, high = weight[1] * side[1].excess;
-        const double next = side[0].value - low * (side[1].value - side[0].value) / (high - low);
-
-        // judge the secant without the weights
-        const double change = side[1].excess - side[0].excess;
-        const double rise = change / (side[1].value - side[0].value);
-        if (fabs(side[1].value - side[0].value) <= shortest && fabs(change) > jump &&
-            fabs(change) > distinct * larger(side[0].error, side[1].error)) {
+        const double width = side[1].value - side[0].value, change = side[1].excess - side[0].excess;
+        const bool is_distinct = fabs(change) > distinct * larger(side[0].error, side[1].error);
+        const bool is_steep = is_distinct && fabs(change / width) > steep * first_slope;
+        const bool are_neighbours = fabs(width) <= shortest;
+        if (are_neighbours && is_distinct && fabs(change) > part_of_jump * first_change) {
             return status_fail(STATUS_SOLVER,
                                "no threshold: the stability jumps between %.6g and %.6g, where the states on the two "
                                "sides are of different branches",
                                side[0].value, side[1].value);
         }
-        found->value = side[near].value - side[near].excess / rise;
+
+        // judge the secant without the weights
+        found->value = side[near].value - side[near].excess * width / change;
         found->slope = slope_near(search, found->value);
         found->by_error = side[near].error / fabs(found->slope);
         found->by_secant = fabs(found->value - side[near].value);
@@ -146,15 +149,22 @@ enum status threshold_solve(struct arena *arena, struct threshold_search *search
                                "undecided: the multipliers differ by less than their errors: move the ends apart, or "
                                "reduce the errors");
         }
-        const bool is_near = fabs(side[near].excess) <= larger(jump, side[near].error);
-        if (is_near && found->by_secant <= larger(part_of_error * found->by_error, shortest)) break;
-        if (search->n >= MOST_POINTS) break;
+        const bool is_near = found->by_secant <= larger(part_of_error * found->by_error, shortest);
+        if (is_near && (are_neighbours || !is_steep)) break;
+        if (search->n >= MOST_POINTS) {
+            return status_fail(STATUS_SOLVER, "no threshold after %d searches: the excess changes too irregularly",
+                               search->n);
+        }
 
-        TRY(find_point(arena, search, next));
+        const double low = weight[0] * side[0].excess, high = weight[1] * side[1].excess;
+        const bool bisects = is_steep || n_stays >= MOST_STAYS;
+        TRY(find_point(arena, search,
+                       bisects ? side[0].value + width / 2 : side[0].value - low * width / (high - low)));
         const struct threshold_point now = search->point[search->n - 1];
         const int replaced = (now.excess > 0) != (side[0].excess > 0);
         side[replaced] = now;
         weight[replaced] = 1;
+        n_stays = stayed == !replaced && !bisects ? n_stays + 1 : 0;
         if (stayed == !replaced) weight[!replaced] /= 2;
         stayed = !replaced;
     }
