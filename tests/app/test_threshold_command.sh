@@ -73,6 +73,44 @@ check it_is_unstable_below grep -qE '"steady_growth": [0-9]' out
 run steady flag.yaml -q --json -o above.nc --set "$key=$above"
 check it_is_stable_above grep -qE '"steady_growth": -[0-9]' out
 
+# ---- with a beat: a course control with too much gain oscillates, and runs decay and grow on the two sides
+
+cat >course.yaml <<'end'
+format: 1
+time: {end: 60, shedding_interval: 0.05, output_interval: 0.1}
+steady: {tolerance: 1e-4}
+fish:
+  - {name: a fish, force: reactive, nodes: 17, sheet_points: 17, start: {heading: 3},
+     control: {law: course, desired_heading: 0}}
+end
+run steady course.yaml --threshold 'fish[*].control.gain=1:6' --json -o course -q
+cp out course.json
+for gain in 3.3 3.8; do run run course.yaml -q -o "run$gain.nc" --set "fish[*].control.gain=$gain"; done
+cat >grow.py <<'end'
+"""The threshold lies between a run that decays and one that grows, and its oscillation has the period of the runs."""
+import json
+import sys
+import netCDF4
+import numpy as np
+
+def course(path):
+    """Mean heading of each beat of 1 s, less the desired one, degree."""
+    with netCDF4.Dataset(path) as data:
+        time, heading = np.asarray(data["time"][:]), np.asarray(data["heading"][:, 0])
+    return np.array([((heading[(time >= n) & (time < n + 1)] + 180) % 360 - 180).mean() for n in range(60)])
+
+found = json.load(open("course.json"))
+decays, grows = course("run3.3.nc"), course("run3.8.nc")
+assert np.ptp(decays[50:]) < 0.5 * np.ptp(decays[20:30]), decays
+assert np.ptp(grows[50:]) > 2 * np.ptp(grows[20:30]), grows
+assert found["unstable"] == "above" and found["kind"] == "Neimark-Sacker", found
+assert found["threshold"] - found["bar"] < 3.8 and found["threshold"] + found["bar"] > 3.3, found
+assert 0 < found["by_error"] < found["bar"] < 1, found
+crossings = np.sum(np.diff(np.sign(decays[10:50] - decays[40:].mean())) != 0)
+assert abs(80 / crossings - found["period"]) < 0.3, (crossings, found)
+end
+check runs_decay_and_grow_on_the_two_sides /usr/bin/python3 grow.py
+
 # ---- a second call repeats no search, and does not mix two of them
 
 sum=$(cksum <flag/member-0001.nc)
