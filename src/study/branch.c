@@ -12,6 +12,7 @@
 #include "base/mathematics.h"
 #include "base/text.h"
 #include "case/case.h"
+#include "case/case_table.h"
 #include "case/sweep.h"
 #include "result/durable.h"
 #include "result/result_row.h"
@@ -571,14 +572,26 @@ enum status branch_follow(const struct branch_options *options, FILE *stream) {
     branch->from = options->from;
     branch->to = options->to;
 
-    // a case that cannot be read creates no folder
+    // a key that does not vary continuously, or a case that cannot be read, creates no folder
     struct case_values values;
-    TRY(read_case_at(branch, &values, branch->to));
+    TRY(read_case(
+        branch, &values,
+        arena_text(arena, "sweep=[{key: \"%s\", values: [%.12g, %.12g]}]", branch->key, branch->from, branch->to)));
+    const enum key_type type = case_table_row(values.sweep[0].key[0].row)->type;
     case_free(&values);
-    TRY(read_case_at(branch, &values, branch->from));
-    enum status status = sweep_refuse(&values);
-    if (status == STATUS_OK) status = steady_refuse(&values);
-    case_free(&values);
+    if (type != REAL && type != DURATION) {
+        return status_fail(STATUS_CASE,
+                           "--continue: %s is %s, which has no values in between: compare its values in a study, with "
+                           "`steady: true` on the axis",
+                           branch->key, type == INTEGER ? "an integer" : "not a number");
+    }
+    enum status status = STATUS_OK;
+    for (int end = 1; end >= 0 && status == STATUS_OK; end--) {
+        TRY(read_case_at(branch, &values, end ? branch->to : branch->from));
+        status = sweep_refuse(&values);
+        if (status == STATUS_OK) status = steady_refuse(&values);
+        case_free(&values);
+    }
     TRY(status);
 
     TRY(prepare_folder(branch));

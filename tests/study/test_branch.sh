@@ -109,6 +109,9 @@ refused an_end_is_a_number 2 'expects KEY=FROM:TO with two different numbers' st
 refused both_ends_are_given 2 'expects KEY=FROM:TO with two different numbers' steady plates.yaml --continue "$key=0.1"
 refused the_key_exists 2 'fish[1].motion.haeve' steady plates.yaml --continue 'fish[1].motion.haeve=0.1:0.2'
 refused both_ends_are_allowed 2 'length' steady plates.yaml --continue 'fish[1].length=1:-1'
+refused a_key_has_values_in_between 2 'fish[*].nodes is an integer, which has no values in between' steady plates.yaml \
+    --continue 'fish[*].nodes=4:5'
+refused a_name_is_no_number 2 'name is not a number' steady plates.yaml --continue 'name=1:2'
 refused a_case_without_a_beat_has_no_branch 2 'no slow quantities' steady "$root/cases/flag.yaml" --continue \
     'fish[*].body.modulus=5e4:1e5'
 refused multipliers_are_needed 2 'set steady.multipliers to true' steady plates.yaml --continue "$key=0.085:0.05" \
