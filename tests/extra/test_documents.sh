@@ -11,7 +11,7 @@ compare() { timeout "$time_limit" "$root/scripts/documents.py" --seconds --progr
 
 n=0
 for document in "$root"/README.md "$root"/doc/*.md; do
-    # tests/library/test_python.py runs the scripts of doc/python.md
+    # tests/extra/python_examples.py runs the scripts of doc/python.md
     grep -q '^```output' "$document" || continue
     n=$((n + 1))
     check "output in ${document#"$root"/} is true" compare --rough "$document"

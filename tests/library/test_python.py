@@ -2,7 +2,6 @@
 """test_python.py: the module shoal. Run by test_python.sh in a folder of its own; ends with the line of a shell test."""
 
 import copy
-import csv
 import functools
 import gc
 import importlib.util
@@ -26,9 +25,6 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, os.environ.get("SHOAL_MODULE", str(ROOT / "scripts")))
 import shoal  # noqa: E402
-
-sys.path.append(str(ROOT / "scripts"))
-import documents  # noqa: E402
 
 SMALL = {"force": "reactive", "nodes": 7, "sheet_points": 21}
 PAIR = {
@@ -1274,145 +1270,13 @@ class Environments(unittest.TestCase):
                                 "gymnasium.spaces True True\nTrue True\n"])
 
 
-def example(name):
-    """A script of doc/examples as a module."""
-    spec = importlib.util.spec_from_file_location(name, ROOT / f"doc/examples/{name}.py")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module  # processes that learn look for it by its name
-    spec.loader.exec_module(module)
-    return module
-
-
-# a fish with cheap beats, whose interval is given
-SWIMMER = {"time": {"end": 1, "shedding_interval": 0.04},
-           "fish": [{"name": "fish", "force": "reactive", "nodes": 9, "body": {"modulus": 1e7}}]}
-
-
-@unittest.skipUnless(importlib.util.find_spec("scipy"), "python3-scipy is missing")
-class Optima(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            cls.best = shoal.optimize(SWIMMER, "cost_of_transport", ["wave.frequency", "wave.amplitude"],
-                                      bounds={"wave.frequency": (0.5, 2)}, subject_to={"speed": 0.8}, path="best", processes=1)
-
-    def test_the_optimum_has_the_wanted_speed_and_a_lower_cost(self):
-        best = self.best
-        self.assertTrue(best.success, best)
-        self.assertLess(abs(best.reached["steady_speed"] / 0.8 - 1), 1e-3)
-        self.assertLess(best.value, 0.9 * best.start)
-        self.assertEqual(list(best.values), ["fish.wave.frequency", "fish.wave.amplitude"])
-        self.assertEqual(best.history[0]["fish.wave.frequency"], 1)
-        self.assertRegex(repr(best), r"^<shoal.Optimum: steady_cost_of_transport 0\.\d+, 0\.\d+ of the start, steady_speed 0\.8")
-
-    def test_the_optimum_is_a_case_of_its_own(self):
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            state = shoal.steady(SWIMMER, self.best.assignments, path="own.nc", overwrite=True)
-        self.assertLess(abs(state.cost_of_transport[0] / self.best.value - 1), 1e-3)
-        self.assertTrue(os.path.exists(self.best.path))
-
-    def test_along_the_wanted_speed_the_cost_has_no_slope(self):
-        """The multiplier of Lagrange: both derivatives of the cost are the same multiple of those of the speed."""
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            cost, speed = shoal.error(SWIMMER, ["steady_cost_of_transport", "steady_speed"], assignments=self.best.assignments,
-                                      sensitivity=["wave.frequency", "wave.amplitude"], path="slopes", overwrite=True)
-        ratios = [cost.sensitivity[key][0] / speed.sensitivity[key][0] for key in cost.sensitivity]
-        self.assertLess(abs(ratios[0] / ratios[1] - 1), 0.05, ratios)
-
-    def test_the_history_is_kept_and_drawn(self):
-        with open("best/history.csv", encoding="utf-8", newline="") as file:
-            rows = list(csv.DictReader(file))
-        self.assertEqual(len(rows), len(self.best.history))
-        self.assertEqual(float(rows[-1]["steady_speed"]), self.best.history[-1]["steady_speed"])
-        if importlib.util.find_spec("matplotlib"):
-            self.assertEqual(len(self.best.plot()), 4)
-
-    def test_wrong_arguments_are_refused_before_a_search(self):
-        for words, wrong in (("at least one number", {"over": []}), ("SLSQP or trust-constr", {"method": "BFGS"}),
-                             ("is the quantity itself", {"subject_to": {"steady_cost_of_transport": 0.1}})):
-            with self.assertRaisesRegex(shoal.CaseError, words):
-                shoal.optimize(SWIMMER, "cost_of_transport", **{"over": ["wave.amplitude"], "path": "never", **wrong})
-        with self.assertRaisesRegex(TypeError, "subject_to is a dict"):
-            shoal.optimize(SWIMMER, "cost_of_transport", ["wave.amplitude"], subject_to=[1], path="never")
-        self.assertFalse(os.path.exists("never"))
-        with self.assertRaisesRegex(shoal.FileError, "best: exists"):
-            shoal.optimize(SWIMMER, "cost_of_transport", ["wave.amplitude"], path="best")
-
-    def test_wrong_numbers_are_refused_with_a_remedy(self):
-        def ask(words, *arguments, **more):
-            with self.assertRaisesRegex(shoal.CaseError, words):
-                shoal.optimize(SWIMMER, "cost_of_transport", *arguments, path="wrong", overwrite=True, **more)
-
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            ask("'nodes' is no such number", ["nodes"])
-            ask("is 0 or not given", ["wave.constant"])
-            ask("not within its bounds, 0.5 and 0.6", ["wave.amplitude"], {"wave.amplitude": (0.5, 0.6)})
-            ask("which is not in over: wave.amplitude", ["wave.amplitude"], {"amplitude": (0.1, 0.6)})
-
-
-class Examples(unittest.TestCase):
-    @FORKS_BESIDE_THREADS  # of the pool before, which end after it has closed
-    def test_a_fish_begins_to_learn(self):
-        hold_place = example("hold_place")
-        hold_place.CASE["time"]["end"] = 1.92
-        policy, history = hold_place.learn(2, 8, 2, seed=1)
-        self.assertEqual((policy.size, len(history), history[0].size), (12, 2, 8))
-        self.assertTrue(all(np.isfinite(rewards).all() and rewards.max() > rewards.min() for rewards in history))
-        again, _ = hold_place.learn(2, 8, 1, seed=1)
-        np.testing.assert_array_equal(policy, again)
-        hold_place.draw("hold_place.png", history, *([hold_place.episode(policy, 1)[1]] for _ in range(2)))
-
-    def test_an_unstable_school_is_held_by_the_amplitude_of_a_plate(self):
-        keep_together = example("keep_together")
-        keep_together.CASE["time"]["end"] = 12
-        away = [keep_together.swim(3.816, 7.235, is_controlled)[1] for is_controlled in (False, True)]
-        self.assertGreater(abs(away[0][-1]), 1)
-        self.assertLess(abs(away[1][-1]), 0.1)
-
-    def test_the_smoother_of_a_linear_model_is_that_of_bayes(self):
-        estimate = example("estimate")
-        random = np.random.default_rng(5)
-        model = random.standard_normal((12, 4)) * np.array([12, 20, 2, 2])
-        truth = estimate.MEAN + estimate.DEVIATION * random.standard_normal(4)
-        data = model @ truth + estimate.NOISE * random.standard_normal(12)
-        ensemble = estimate.smooth(lambda schools: schools @ model.T, data, random, 4000)[-1]
-        inverse = np.diag(estimate.DEVIATION**-2) + model.T @ model / estimate.NOISE**2
-        mean = np.linalg.solve(inverse, estimate.MEAN / estimate.DEVIATION**2 + model.T @ data / estimate.NOISE**2)
-        spread = np.linalg.inv(inverse).diagonal() ** 0.5
-        # the data tell something, and the errors of 4000 members are 1/63 and 1/89 of the deviation
-        self.assertTrue(np.all(spread < 0.7 * estimate.DEVIATION), spread)
-        np.testing.assert_allclose((ensemble.mean(axis=0) - mean) / spread, 0, atol=0.08)
-        np.testing.assert_allclose(ensemble.std(axis=0) / spread, 1, atol=0.06)
-
-    def test_a_follower_finds_its_leader(self):
-        estimate = example("estimate")
-        estimate.BEATS = 3
-        truth, ensembles = estimate.twin(0, 1, lambda schools: [estimate.measured(one) for one in schools], 12)
-        before, after = (estimate.errors(ensemble, truth) for ensemble in ensembles[[0, -1]])
-        self.assertTrue(np.all(after.std(axis=0) < 0.5 * before.std(axis=0)), (before.std(axis=0), after.std(axis=0)))
-        estimate.draw("estimate.png", [(truth, ensembles)])
-
-    def test_the_best_gait_is_found_and_compared(self):
-        best_gait = example("best_gait")
-        best_gait.main({**SWIMMER, "name": "gait"}, 0.8, None, {"wave.amplitude": (0.15, 0.6)}, models=False)
-        self.assertTrue(os.path.exists("best_gait-error/error.csv") and os.path.exists("best_gait/history.csv"))
-
-
-class Document(unittest.TestCase):
-    def test_every_snippet_runs_and_prints_its_comments(self):
-        path = ROOT / "doc/python.md"
-        snippets = [block.text for block in documents.blocks_of(path.read_text()) if block.kind == "python"]
-        self.assertGreater(len(snippets), 10)
-        self.assertGreater(sum(len(documents.PRINT.findall(snippet)) for snippet in snippets), 5)
-        self.assertEqual(list(documents.compare(path, os.environ["SHOAL_PROGRAM"])), [])
-
-
-if __name__ == "__main__":
+def main():
+    """Run the tests of the script that was started, and print the line of a shell test."""
     result = unittest.main(verbosity=2, exit=False).result
     n_bad = len(result.failures) + len(result.errors)
     print(f"{result.testsRun - n_bad - len(result.skipped)} passed, {n_bad} failed, {len(result.skipped)} skipped")
     sys.exit(n_bad > 0)
+
+
+if __name__ == "__main__":
+    main()
