@@ -6,8 +6,6 @@
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 
-scripts=$root/scripts
-
 # ---- an equilibrium: the lift of a foil that bends
 
 cat >foil.yaml <<'end'
@@ -409,20 +407,5 @@ end
 for folder in foil-error swimmer-study models along five one few; do
     check "error.csv and study.nc say the same: $folder" /usr/bin/python3 budget.py "$folder"
 done
-
-# ---- pictures
-
-if /usr/bin/python3 -c 'import netCDF4, matplotlib' 2>err; then
-    /usr/bin/python3 "$scripts/plot.py" study swimmer-study/study.nc budget.png >drawn 2>&1
-    check a_picture_of_the_budget test -s budget.png
-    /usr/bin/python3 "$scripts/plot.py" study along/study.nc along.png >>drawn 2>&1
-    check a_picture_of_errors_along_a_sweep test -s along.png
-    /usr/bin/python3 "$scripts/plot.py" study compared/study.nc compared.png >>drawn 2>&1
-    check a_picture_of_a_comparison test -s compared.png
-    /usr/bin/python3 "$scripts/plot.py" study swims/study.nc swims.png >>drawn 2>&1
-    check a_picture_of_sensitivities test -s swims.png
-else
-    skip pictures 'python3-netcdf4 or python3-matplotlib is missing'
-fi
 
 finish

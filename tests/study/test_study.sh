@@ -5,7 +5,6 @@
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 
-scripts=$root/scripts
 article=$root/cases/include/article.yaml
 
 # The time of the last change of a file, with all digits.
@@ -356,71 +355,6 @@ refused other_words_of_the_reason_miss_too 3 'expect[0]: failures: expectation n
     --set 'expect=[{fails: out of memory, where: [solver.method=euler]}]'
 run study stated.yaml -o plain --set 'sweep=[]'
 check without_a_sweep_nothing_is_expected eval 'test "$code" = 0 && ! grep -q Expected out'
-
-# ---- pictures
-
-draws() {  # file
-    rm -f picture.png
-    /usr/bin/python3 "$scripts/plot.py" study "$1" picture.png >drawn && test -s picture.png
-}
-if /usr/bin/python3 -c 'import netCDF4, matplotlib' 2>err; then
-    check a_picture_of_orders draws refined-study/study.nc
-    check a_picture_of_groups draws groups/study.nc
-    check a_picture_of_methods draws swimmer-study/study.nc
-    run study swimmer.yaml -o map --set time.end=0.04 --set \
-        'sweep=[{key: "fish[*].body.modulus", values: [1e4, 1e6]}, {key: "fish[*].wave.frequency", values: [1, 2]}]'
-    check a_map_over_two_axes draws map/study.nc
-    run study stated.yaml -o places --set time.end=0.04 --set expect=[] --set \
-        'sweep=[{key: "fish[1].start.position", values: [[1, 0.5], [2, 0.5]]}]'
-    check a_map_of_places draws places/study.nc
-    cat >held.yaml <<'end'
-format: 1
-time: {end: 3, shedding_interval: 0.05}
-defaults: {fish: {force: reactive, nodes: 5, sheet_points: 11}}
-fish: [{motion: {prescribed: head}}]
-sweep: [{key: "fish[*].start.speed", values: [0.5, 1]}]
-end
-    cat >panels.py <<'end'
-"""The quantities that the picture of a study has, by where its scripts are, its file and their names."""
-import sys
-sys.path.insert(0, sys.argv[1])
-from shoal._plot_study import Study, panels_of
-study = Study(sys.argv[2])
-found = panels_of(study, study.axes[0][0])
-sys.exit(0 if found == sys.argv[3:] else str(found))
-end
-    panels() { /usr/bin/python3 panels.py "$scripts" "$@"; }
-    run study held.yaml -o held
-    check a_picture_of_a_held_fish draws held/study.nc
-    check it_shows_what_holding_takes panels held/study.nc mean_thrust mean_power efficiency
-    run study held.yaml -o free --set 'fish[0].motion.prescribed=none'
-    check a_free_fish_that_starts_at_a_speed_is_not_held panels free/study.nc speed cost_of_transport strouhal
-    run study held.yaml -o heaving --set 'fish[0].wave={amplitude: 0, frequency: 0}' --set \
-        'fish[0].motion={prescribed: head, surge: free, heave: 0.1, frequency: 1}'
-    check a_heaving_fish_has_cost_and_efficiency_of_its_heave panels heaving/study.nc speed cost_of_transport efficiency
-    run study held.yaml -q -o foil --set 'fish[0].wave={amplitude: 0, frequency: 0}' --set 'fluid.velocity=[1, 0]' --set \
-        'fish[0].motion={prescribed: head, speed: 0, heave: 0.1, frequency: 1}' --set \
-        'sweep=[{key: "fish[*].body.modulus", values: [1e5, 1e6]}]'
-    check a_foil_held_in_a_stream_has_thrust_and_efficiency panels foil/study.nc mean_thrust mean_power efficiency
-    # two of three levels need more steps than permitted
-    run study refined.yaml -o lonely --set time.end=0.04 --set time.shedding_interval=0.02 --set solver.method=rk4 \
-        --set solver.max_steps=3 --set 'sweep=[{key: solver.step, values: [0.01, 0.005, 0.0025], refine: true}]'
-    check no_picture_without_errors eval '! draws lonely/study.nc && has check.out "no errors to draw"'
-    run study refined.yaml -o costs --set time.end=0.08 --set time.shedding_interval=0.01 \
-        --set 'fish[0].wave.ramp=0' --set 'sweep=[{
-        keys: ["fish[*].body.modulus", solver.method, solver.step, solver.rtol],
-        values: [[1e5, ida, 0, 1e-8], [1e5, ida, 0, 1e-5], [1e5, rk4, 1e-3, 1e-5], [1e5, euler, 1e-2, 1e-5]]}]'
-    check a_picture_of_costs draws costs/study.nc
-    check the_reference_does_not_compete has drawn '| 100000 | ida | rtol 1e-05 |'
-    check a_fixed_step_is_a_setting has drawn '| 100000 | rk4 | step 0.001 |'
-    check a_method_without_an_accurate_member_is_named has drawn '| 100000 | euler | none within 0.0001 m and 0.001 |'
-    run compare refined.yaml --set 'sweep=[]' --set time.end=0.08 --repeats 1 -o compare.nc
-    check a_picture_of_a_comparison draws compare.nc
-    check no_picture_of_one_run eval \
-        '! draws single/member-0000.nc && has check.out "the file of a run, not of a study"'
-else
-    skip pictures 'python3-netcdf4 or python3-matplotlib is missing'
-fi
 
 # ---- deaths
 
