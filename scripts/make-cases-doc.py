@@ -68,8 +68,12 @@ x.yaml:6:5: error: fish[0].stifness: unknown key; did you mean 'modulus'? The ke
 - *Defaults.* In the tables, a default in *italics* is computed from other values, and the word *published* precedes the
   value under `preset: published`. If a key changes other defaults, as `force: reactive` does, `check` and `run` print a
   note.
-- *Times.* `end`, `output_interval` and `checkpoint_interval` are integer multiples of `shedding_interval`, and
-  `wake_interval` is one of `output_interval`.
+- *Times* are in seconds or in beats, as `end: 20 beats` or `shedding_interval: 1/50 beat`, here, in `--set`, in sweeps and
+  in Python. A key of a fish counts the beats of this fish. A key of the case needs fish that beat alike, and other schools
+  have to give seconds; only `wake.lifetime` and `wake.decay` then count the beats of the slowest fish.
+- *Multiples.* `end`, `output_interval` and `checkpoint_interval` are integer multiples of `shedding_interval`, and
+  `wake_interval` is one of `output_interval`. If `shedding_interval` is in beats or left to its default, other times are
+  rounded to it with a note; if it is in seconds, a time that does not fit is refused.
 
 ## Precedence
 

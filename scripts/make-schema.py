@@ -67,7 +67,7 @@ def form(key):
     return {
         "number": one,
         "integer": one,
-        "number, or 'number beats'": {"anyOf": [one, {**STRING, "pattern": "^[0-9.eE+-]+ beats?$"}]},
+        "time": {"anyOf": [one, {**STRING, "pattern": "^[0-9.eE+-]+(/[0-9.eE+-]+)? beats?$"}]},
         "[x, y]": {**pair, "items": one},
         "list of numbers": {**LIST, "items": one},
         "list of [x, y]": {**LIST, "items": {**pair, "items": one}},

@@ -4,7 +4,8 @@
     scripts/validation.py [TABLE ...] PICTURE      TABLE: of `build/verify/verify SECTION -o TABLE`, sections validation and
                                                    tandem; run now if there is none
 
-A grey bar is the spread of the source, or 5 % where the source has one value.
+The reference of every panel has the marks of REFERENCE, open with the colour of its series; this program has lines or
+filled marks. A grey bar is the spread of the source, or 5 % where the source has one value.
 """
 
 import csv

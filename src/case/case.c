@@ -1,6 +1,7 @@
 /* case.c: turns a tree into plain values, row by row of the table of keys. */
 #include "case/case.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -72,6 +73,20 @@ static void check_keys(const struct yaml_node *map, const char *section, const c
 
 // ---- values
 
+/* Read a node into a field. A time in beats is kept apart until the frequencies are known. */
+static void read_field(struct reading *reading, const struct key *key, int fish, void *field,
+                       const struct yaml_node *node, const char *path, struct yaml_errors *errors) {
+    if (key->type != DURATION) {
+        case_value_read(reading->values->arena, key, field, node, path, errors);
+        return;
+    }
+    struct duration duration;
+    case_value_read(reading->values->arena, key, &duration, node, path, errors);
+    *(double *)field = duration.seconds;
+    if (isnan(duration.beats)) return;
+    case_table_add_beats(reading->values, (struct case_beats){key, fish, duration.beats, false});
+}
+
 /* Read the value of one key, of the case or of each fish. A field stays cleared if neither the case nor the table has a
  * value. */
 static void read_key(struct reading *reading, const struct key *key) {
@@ -86,7 +101,8 @@ static void read_key(struct reading *reading, const struct key *key) {
     const struct yaml_node *const shared = is_of_fish ? yaml_tree_find(defaults, key->path + 5) : NULL;
     if (shared) {
         struct fish_parameters scratch;
-        void *const field = case_table_field(key, NULL, &scratch);
+        struct duration duration;
+        void *const field = key->type == DURATION ? (void *)&duration : case_table_field(key, NULL, &scratch);
         snprintf(path, sizeof path, "defaults.%s", key->path);
         case_value_clear(key, field);
         case_value_read(tree->arena, key, field, shared, path, &reading->errors);
@@ -107,9 +123,9 @@ static void read_key(struct reading *reading, const struct key *key) {
         if (node) {
             snprintf(path, sizeof path, "%s", key->path);
             if (is_of_fish) snprintf(path, sizeof path, "fish[%d].%s", i, key->path + 5);
-            case_value_read(values->arena, key, field, node, path, is_default ? &silent : &reading->errors);
+            read_field(reading, key, i, field, node, path, is_default ? &silent : &reading->errors);
         } else if (standard) {
-            case_value_read(values->arena, key, field, standard, key->path, &silent);
+            read_field(reading, key, i, field, standard, key->path, &silent);
         } else if (!key->derived) {
             // a section that is written as a value ("time: 3") has been reported already
             char section[80] = "";

@@ -61,6 +61,44 @@ __attribute__((format(printf, 4, 5))) static void complain_if(bool condition, co
     }
 }
 
+// ---- times in beats
+
+/* Refuse a time in beats without a beat, or of fish with different beats; true if none is refused. */
+static bool check_beats(struct check *check) {
+    const struct case_values *const values = check->values;
+    const struct school_parameters *const school = &values->school;
+    double least = INFINITY, most = 0;
+    int slowest = 0, fastest = 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        const double frequency = fish_parameters_frequency(&school->fish[f]);
+        if (!(frequency > 0)) continue;
+        if (frequency < least) slowest = f;
+        if (frequency > most) fastest = f;
+        least = fmin(least, frequency);
+        most = fmax(most, frequency);
+    }
+
+    bool are_good = true;
+    for (int i = 0; i < values->n_beats; i++) {
+        const struct case_beats *const beats = &values->beats[i];
+        if (beats->is_default) continue;
+        const bool is_of_fish = case_table_is_of_fish(beats->key);
+        const bool lacks_beat = !(case_table_beat(values, beats->key, beats->fish) > 0);
+        // a wake lives as long as the slowest fish needs
+        const bool is_of_wake = strncmp(beats->key->path, "wake.", 5) == 0;
+        const bool is_unclear = !is_of_fish && !is_of_wake && most - least > 1e-9 * most;
+        check->index = beats->fish;
+        complain_if(lacks_beat, check, beats->key->path, "is in beats, but %s: give seconds",
+                    is_of_fish ? "the fish does not beat" : "no fish beats");
+        complain_if(is_unclear, check, beats->key->path,
+                    "is in beats, but fish[%d] beats with %g Hz and fish[%d] with %g Hz: give seconds", slowest, least,
+                    fastest, most);
+        are_good &= !lacks_beat && !is_unclear;
+    }
+    check->index = 0;
+    return are_good;
+}
+
 // ---- time and solver
 
 /* Require a time to be an integer multiple of a unit; name: path of the unit. */
@@ -120,7 +158,15 @@ static void check_swept_interval(const struct check *check, const char *path, do
         for (int i = 0; i < axis->n_values * axis->n_keys; i++) {
             double value = 0;
             const bool is_interval = strcmp(axis->key[i % axis->n_keys].path, interval) == 0;
-            if (!is_interval || !text_number(axis->value[i], &value) || !(value > 0)) continue;
+            if (!is_interval) continue;
+            // beats of the first member; another frequency changes both times alike, or is refused by its member
+            struct duration duration = {NAN, NAN};
+            const struct key *const key = case_table_row(interval);
+            struct yaml_errors silent = {.arena = check->tree->arena};
+            const struct yaml_node node = {.kind = YAML_SCALAR, .text = axis->value[i]};
+            case_value_read(check->tree->arena, key, &duration, &node, interval, &silent);
+            value = isnan(duration.beats) ? duration.seconds : duration.beats * case_table_beat(values, key, 0);
+            if (!(value > 0)) continue;
             if (!(fabs(time - round(time / value) * value) > 1e-9 * time)) continue;
             const struct yaml_node *const sweep = yaml_tree_find(check->tree->root, "sweep");
             const int row = i / axis->n_keys;
@@ -167,7 +213,7 @@ static void check_wake(const struct check *check) {
     const struct wake_parameters *const wake = &check->values->school.wake;
     const struct sheet_parameters *const sheet = &check->values->school.sheet;
     const double interval = check->values->school.shedding_interval;
-    const double lifetime = wake->lifetime.seconds, decay = wake->decay.seconds;
+    const double lifetime = wake->lifetime, decay = wake->decay;
     const double n_vortices = fmin(lifetime, check->values->time.end) / interval;
     static const char only_sheet[] = "has an effect only with 'wake.shedding: sheet': remove the key";
     const bool is_sheet = wake->shedding == SHEDDING_SHEET, is_other = (int)wake->shedding >= 0 && !is_sheet;
@@ -186,11 +232,6 @@ static void check_wake(const struct check *check) {
     complain_if(!is_finite && fabs(wake->leg_length - 1) > 0, check, "wake.leg_length",
                 "has an effect only with 'pressure.span: finite': remove the key");
 
-    static const char no_beat[] = "is in beats, but no fish beats: give seconds";
-    const bool lacks_beat = wake->lifetime.beats > 0 && !(lifetime > 0);
-    complain_if(lacks_beat, check, "wake.lifetime", no_beat);
-    if (lacks_beat) return;
-    complain_if(wake->decay.beats > 0 && !(decay > 0), check, "wake.decay", no_beat);
     complain_if(decay > lifetime, check, "wake.decay", "%g s is longer than wake.lifetime, %g s", decay, lifetime);
     complain_if(lifetime < interval, check, "wake.lifetime", "%g s is less than time.shedding_interval, %g s", lifetime,
                 interval);
@@ -691,9 +732,7 @@ static void check_derived(const struct check *check, bool is_of_fish) {
 
         const void *const field =
             (const char *)(is_of_fish ? (const void *)fish : (const void *)check->values) + key->offset;
-        const double value = key->type == INTEGER    ? *(const int *)field
-                             : key->type == DURATION ? ((const struct duration *)field)->seconds
-                                                     : *(const double *)field;
+        const double value = key->type == INTEGER ? *(const int *)field : *(const double *)field;
         const struct bounds *const bounds = &key->bounds;
         const bool is_low = value < bounds->min || (bounds->is_min_open && value <= bounds->min);
         const bool is_out = is_low || value > bounds->max || isinf(value);  // false for a value that was not derived
@@ -716,6 +755,7 @@ static int by_name(const void *a, const void *b) {
 void case_check(const struct case_values *values, const struct case_tree *tree, struct yaml_errors *errors) {
     const struct school_parameters *const school = &values->school;
     struct check check = {.values = values, .tree = tree, .errors = errors};
+    if (!check_beats(&check)) return;  // the relations of a time that has no value
     check_time(&check);
     check_swept_interval(&check, "time.end", values->time.end);
     check_swept_interval(&check, "time.output_interval", values->time.output_interval);
@@ -783,16 +823,23 @@ static void note_radians(const struct check *check, const char *path, double deg
     }
 }
 
-/* Note a time that was rounded to the default shedding interval. */
+/* Note a time that was rounded to a shedding interval in beats or by default. */
 static void note_rounded(const struct check *check, const char *path, double time, const char *unit) {
     bool is_default;
     const struct yaml_node *const node = case_merge_value(check->tree, path, 0, &is_default);
     double written;
-    if (!node || !text_number(node->text, &written)) return;
-    complain_if(fabs(written - time) > 1e-9 * time, check, path,
-                "%.6g s is not an integer multiple of %s and is rounded to %.6g s; the default of "
-                "time.shedding_interval is 1/100 of the fastest beat, %.6g s",
-                written, unit, time, check->values->school.shedding_interval);
+    if (!node) return;
+    const struct case_beats *const interval =
+        case_table_in_beats(check->values, case_table_row("time.shedding_interval"), 0);
+    const struct key *const key = case_table_row(path);
+    const struct case_beats *const beats = case_table_in_beats(check->values, key, 0);
+    if (beats) written = beats->n * case_table_beat(check->values, key, 0);
+    if (!beats && !text_number(node->text, &written)) return;
+    complain_if(
+        fabs(written - time) > 1e-9 * time, check, path,
+        "%.6g s is not an integer multiple of %s and is rounded to %.6g s; time.shedding_interval is %s, %.6g s",
+        written, unit, time, interval ? "in beats" : "1/100 of the fastest beat by default",
+        check->values->school.shedding_interval);
 }
 
 static void note_fish(const struct check *check) {
@@ -839,7 +886,7 @@ static const struct key *switching_key(const struct check *check, const struct k
     const void *const field = (const char *)(is_of_fish ? (const void *)check->fish : check->values) + key->offset;
     const void *const other = (const char *)(is_of_fish ? (const void *)initial->school.fish : initial) + key->offset;
     const bool is_switched = key->type == CHOICE ? *(const int *)field != *(const int *)other
-                             : key->type == REAL
+                             : key->type == REAL || key->type == DURATION
                                  ? (fabs(*(const double *)field) > 0) != (fabs(*(const double *)other) > 0)
                                  : ((const struct number_list *)field)->n > 0;
     if (!is_switched) return NULL;

@@ -24,7 +24,7 @@ static void show_rows(struct text *text, struct case_values *values, struct fish
         // skip keys that are applied already, and keys without a value
         if (!case_table_is_value(key) || strcmp(key->path, "preset") == 0) continue;
         if (key->type == STRING && !*(char *const *)field) continue;
-        if (key->type == REAL && isnan(*(const double *)field)) continue;
+        if ((key->type == REAL || key->type == DURATION) && isnan(*(const double *)field)) continue;
         if (key->type == INTEGER && *(const int *)field < key->bounds.min) continue;
         if ((key->type == NUMBERS || key->type == PROFILE || key->type == ROWS) &&
             ((const struct number_list *)field)->n == 0)
@@ -44,10 +44,25 @@ static void show_rows(struct text *text, struct case_values *values, struct fish
         const bool is_first_of_fish = fish && !before;
         const int indent = 2 * depth + (fish ? 4 : 0);
         text_add(text, "%*s%s%s: ", is_first_of_fish ? indent - 2 : indent, "", is_first_of_fish ? "- " : "", name);
-        case_value_write(text, key, field);
+        const int f = fish ? (int)(fish - values->school.fish) : 0;
+        const struct case_beats *const beats = case_table_in_beats(values, key, f);
+        // a time that was rounded is shown in seconds, because the interval that it was rounded to is now given
+        const double in_seconds = beats ? text_round(beats->n * case_table_beat(values, key, f)) : NAN;
+        const bool is_as_given = beats && !beats->is_default && !(fabs(in_seconds - *(const double *)field) > 0);
+        if (is_as_given) {
+            text_add_number(text, beats->n);
+            text_add(text, fabs(beats->n - 1) > 0 ? " beats" : " beat");
+        } else {
+            case_value_write(text, key, field);
+        }
         if (*key->unit) {
             const size_t used = text->length - begin;
-            text_add(text, "%*s# %s", used < COMMENT_COLUMN ? (int)(COMMENT_COLUMN - used) : 2, "", key->unit);
+            text_add(text, "%*s# ", used < COMMENT_COLUMN ? (int)(COMMENT_COLUMN - used) : 2, "");
+            if (is_as_given) {
+                case_value_write(text, key, field);
+                text_add(text, " ");
+            }
+            text_add(text, "%s", key->unit);
         }
         text_add(text, "\n");
         before = key->path;

@@ -56,17 +56,19 @@ static bool round_to_multiple(double *time, double unit, bool up) {
     return true;
 }
 
-/* Round also the end of the run up to an event, and the output and checkpoint intervals to the nearest multiples of the
- * shedding interval; times that were not read are left unset. doc/model.md, section 7. */
+/* Set the shedding interval. If the case gives no seconds for it, round the end of the run up to an event, and the
+ * output and checkpoint intervals to the nearest multiples; times that were not read are left unset. doc/model.md,
+ * section 7. */
 static void derive_shedding_interval(const struct key_place *at) {
     struct case_values *const values = at->values;
     double *const interval = &values->school.shedding_interval, *const rows = &values->time.output_interval,
                   fastest = 0;
-    if (!isnan(*interval)) return;
+    const struct key *const key = case_table_row("time.shedding_interval");
+    if (!isnan(*interval) && !case_table_in_beats(values, key, 0)) return;
 
     for (int i = 0; i < values->school.n_fish; i++)
         fastest = fmax(fastest, fish_parameters_frequency(&values->school.fish[i]));
-    *interval = fastest > 0 ? 1 / (100 * fastest) : 0.01;
+    if (isnan(*interval)) *interval = fastest > 0 ? 1 / (100 * fastest) : 0.01;
     round_to_multiple(&values->time.end, *interval, true);
     round_to_multiple(&values->time.checkpoint_interval, *interval, false);
 
@@ -85,25 +87,29 @@ static void derive_gust(const struct key_place *at) {
     if (fluid->gust_profile == GUST_STEP) set_default(&fluid->gust_gradient_distance, length / 5);
 }
 
-/* Set lifetime and decay, in seconds and in beats of the slowest fish, and the distance of the rows of a street. */
+/* Set lifetime and decay, and the distance of the rows of a street. */
 static void derive_wake(const struct key_place *at) {
-    struct wake_parameters *const wake = &at->values->school.wake;
+    struct case_values *const values = at->values;
+    struct wake_parameters *const wake = &values->school.wake;
     struct street_parameters *const street = &wake->street;
-    double period = 0;
-    for (int f = 0; f < at->values->school.n_fish; f++) {
-        const double frequency = fish_parameters_frequency(&at->values->school.fish[f]);
-        if (frequency > 0) period = fmax(period, 1 / frequency);
-    }
+    const struct key *const lifetime = case_table_row("wake.lifetime"), *const decay = case_table_row("wake.decay");
+    const double period = case_table_beat(values, lifetime, 0);
 
-    if (isnan(wake->lifetime.seconds) && period > 0) set_default(&wake->lifetime.beats, 8);
-    set_default(&wake->lifetime.seconds, wake->lifetime.beats * period);
-    set_default(&wake->lifetime.seconds, 2);
+    if (isnan(wake->lifetime) && period > 0) {
+        case_table_add_beats(values, (struct case_beats){lifetime, 0, 8, true});
+        wake->lifetime = text_round(8 * period);
+    }
+    set_default(&wake->lifetime, 2);
 
     // to the modes of a school that does not beat a wake seems to end abruptly, unless it decays over most of its life
     const double part = period > 0 ? 0.25 : 0.75;
-    if (isnan(wake->decay.seconds) && period > 0) set_default(&wake->decay.beats, part * wake->lifetime.beats);
-    set_default(&wake->decay.seconds, wake->decay.beats * period);
-    set_default(&wake->decay.seconds, part * wake->lifetime.seconds);
+    const struct case_beats *const in_beats = period > 0 ? case_table_in_beats(values, lifetime, 0) : NULL;
+    if (isnan(wake->decay) && in_beats) {
+        const double n = text_round(part * in_beats->n);
+        case_table_add_beats(values, (struct case_beats){decay, 0, n, true});
+        wake->decay = text_round(n * period);
+    }
+    set_default(&wake->decay, part * wake->lifetime);
 
     // the ratio of a street without linear growth of disturbances: cosh^2(pi h/a) = 2
     if (street->n > 0) set_default(&street->row_distance, acosh(sqrt(2)) / M_PI * street->spacing);
@@ -168,19 +174,20 @@ const struct key case_table[] = {
     {"preset", CHOICE, AT(preset), "none", ANY, "", .meaning = "published: defaults of the published scheme",
      .words = WORDS("none", "published"), .synonyms = "variant"},
 
-    {"time.end", REAL, AT(time.end), NULL, ABOVE(0), "s", .meaning = "end of the simulation, which starts at time 0",
+    {"time.end", DURATION, AT(time.end), NULL, ABOVE(0), "s",
+     .meaning = "end of the simulation, which starts at time 0",
      .synonyms = "duration t_end tend final_time stop t_final"},
-    {"time.shedding_interval", REAL, AT(school.shedding_interval), NULL, ABOVE(0), "s",
+    {"time.shedding_interval", DURATION, AT(school.shedding_interval), NULL, ABOVE(0), "s",
      .meaning = "time between two events; at each event every fish sheds a vortex",
      .derived = "1/100 of the period of the fastest beat or prescribed motion, 0.01 s without a beat; time.end and the "
                 "output intervals are then rounded to events",
      .derive = derive_shedding_interval, .cause = "fish.wave.frequency", .synonyms = "dt delta_t timestep time_step",
      .published = "0.01"},
-    {"time.output_interval", REAL, AT(time.output_interval), NULL, ABOVE(0), "s",
+    {"time.output_interval", DURATION, AT(time.output_interval), NULL, ABOVE(0), "s",
      .meaning = "time between two rows of output, an integer multiple of shedding_interval",
      .derived = "ten shedding intervals", .multiple = {10, "time.shedding_interval"}, .cause = "time.shedding_interval",
      .synonyms = "output_every save_interval dt_out"},
-    {"time.checkpoint_interval", REAL, AT(time.checkpoint_interval), "0", FROM(0), "s",
+    {"time.checkpoint_interval", DURATION, AT(time.checkpoint_interval), "0", FROM(0), "s",
      .meaning = "time between two checkpoints for `shoal resume`, an integer multiple of shedding_interval; 0: only "
                 "when the run is stopped",
      .synonyms = "checkpoint restart_interval checkpoint_every save_every"},
@@ -233,9 +240,8 @@ const struct key case_table[] = {
      .meaning = "pressure.span finite: factor of the length s(d) of the legs of the vortex rings in the wake "
                 "(doc/model.md, section 18), a choice of the model"},
     {"wake.lifetime", DURATION, AT(school.wake.lifetime), NULL, ABOVE(0), "s",
-     .meaning = "age at which a vortex is removed, in s or in beats of the slowest fish, such as '3 beats'",
-     .derived = "8 beats; 2 s if no fish beats", .derive = derive_wake, .cause = "fish.wave.frequency",
-     .published = "2", .synonyms = "life max_age age"},
+     .meaning = "age at which a vortex is removed", .derived = "8 beats; 2 s if no fish beats", .derive = derive_wake,
+     .cause = "fish.wave.frequency", .published = "2", .synonyms = "life max_age age"},
     {"wake.decay", DURATION, AT(school.wake.decay), NULL, FROM(0), "s",
      .meaning = "last part of the lifetime, in which the circulation decays to 0",
      .derived = "1/4 of the lifetime; 3/4 if no fish beats", .derive = derive_wake, .cause = "wake.lifetime",
@@ -316,7 +322,7 @@ const struct key case_table[] = {
      .words = WORDS("blocks", "klu"), .synonyms = "linear_solver direct preconditioner"},
     {"solver.threads", INTEGER, AT(school.threads), "1", FROM_TO(1, MAX_THREADS), "", .meaning = "number of threads",
      .synonyms = "n_threads cores processes"},
-    {"solver.step", REAL, AT(solver.step), "0", FROM(0), "s", .meaning = "fixed step; 0: adaptive steps",
+    {"solver.step", DURATION, AT(solver.step), "0", FROM(0), "s", .meaning = "fixed step; 0: adaptive steps",
      .synonyms = "step_size"},
     {"solver.max_steps", INTEGER, AT(solver.max_steps), "10000", FROM_TO(1, MAX_STEPS), "",
      .meaning = "the integration fails after this many steps between two events", .synonyms = "mxstep"},
@@ -329,7 +335,7 @@ const struct key case_table[] = {
      .meaning = "forces in the file; totals: per fish; edges: also per edge; sides: also the laminar friction on each "
                 "side of a fish with force pressure",
      .words = WORDS("totals", "edges", "sides")},
-    {"output.wake_interval", REAL, AT(output.wake_interval), NULL, ABOVE(0), "s",
+    {"output.wake_interval", DURATION, AT(output.wake_interval), NULL, ABOVE(0), "s",
      .meaning = "time between two records of the wake, an integer multiple of output_interval",
      .derived = "time.output_interval", .multiple = {1, "time.output_interval"}, .cause = "time.output_interval"},
 
@@ -422,7 +428,7 @@ const struct key case_table[] = {
     {"fish.body.stretching_damping", REAL, IN_FISH(body.stretching_damping), "0", FROM(0), "N s m-1",
      .meaning = "internal damping of stretching, per edge of a body with reference_nodes nodes", .synonyms = "d_s",
      .published = "1"},
-    {"fish.body.relaxation_time", REAL, IN_FISH(body.relaxation_time), NULL, FROM(0), "s",
+    {"fish.body.relaxation_time", DURATION, IN_FISH(body.relaxation_time), NULL, FROM(0), "s",
      .meaning = "Kelvin-Voigt damping: ratio of damping to stiffness", .published = "0",
      .derived = "1/50 of the period of the beat or of the prescribed motion (0 without a beat)", .derive = derive_fish,
      .cause = "fish.wave.frequency", .follows = WORDS("fish.wave.frequency", "fish.motion.frequency")},
@@ -453,7 +459,7 @@ const struct key case_table[] = {
     {"fish.wave.frequency", REAL, IN_FISH(wave.frequency), "1", FROM(0), "Hz", .meaning = "beat frequency",
      .synonyms = "omega freq f beat period"},
     {"fish.wave.phase", REAL, IN_FISH(wave.phase), "0", ANGLE, "degree", .meaning = "phase at time 0"},
-    {"fish.wave.ramp", REAL, IN_FISH(wave.ramp), NULL, FROM(0), "s",
+    {"fish.wave.ramp", DURATION, IN_FISH(wave.ramp), NULL, FROM(0), "s",
      .meaning = "time over which the amplitude is ramped up", .derived = "one period, 1/frequency (0 for frequency 0)",
      .derive = derive_fish, .cause = "fish.wave.frequency"},
 
@@ -551,7 +557,7 @@ const struct key case_table[] = {
      .synonyms = "k_d kd derivative"},
     {"fish.control.slow", REAL, IN_FISH(control.slow), "0.1", FROM(0), "",
      .meaning = "course, place: speed in body lengths per period below which the course has less weight"},
-    {"fish.control.course_filter", REAL, IN_FISH(control.course_filter), NULL, FROM(0), "s",
+    {"fish.control.course_filter", DURATION, IN_FISH(control.course_filter), NULL, FROM(0), "s",
      .meaning = "course, place: time constant of the filter of the rate of change of the course; 0: no filter",
      .derived = "a quarter of a period, 0.25/wave.frequency (0 for frequency 0)", .derive = derive_fish,
      .cause = "fish.wave.frequency"},
@@ -559,14 +565,14 @@ const struct key case_table[] = {
      .meaning = "maximum of the steering bias"},
     {"fish.control.feedforward", REAL, IN_FISH(control.feedforward), "0", ANY, "",
      .meaning = "weight of the feedforward: the filtered moment of the flow; 0 with force: pressure", .published = "1"},
-    {"fish.control.filter", REAL, IN_FISH(control.filter), NULL, FROM(0), "s",
+    {"fish.control.filter", DURATION, IN_FISH(control.filter), NULL, FROM(0), "s",
      .meaning = "time constant of the filter of feedforward; 0: the moment at the last event",
      .derived = "one period, 1/wave.frequency (0 for frequency 0)", .derive = derive_fish,
      .cause = "fish.wave.frequency", .published = "0"},
     {"fish.control.rate", REAL, IN_FISH(control.rate), "2", ABOVE(0), "s-1",
      .meaning = "averaged_heading, course, place: maximum rate of change of the steering bias, and of the "
                 "relative amplitude with place"},
-    {"fish.control.ramp", REAL, IN_FISH(control.ramp), NULL, ABOVE(0), "s",
+    {"fish.control.ramp", DURATION, IN_FISH(control.ramp), NULL, ABOVE(0), "s",
      .meaning = "duration of a change by a program (doc/python.md)",
      .derived = "half a period, 0.5/wave.frequency (1 s for frequency 0)", .derive = derive_fish,
      .cause = "fish.wave.frequency"},
@@ -630,6 +636,28 @@ int case_table_n_fields(const struct key *key, const struct case_values *values)
     return case_table_is_of_fish(key) ? values->school.n_fish : 1;
 }
 
+double case_table_beat(const struct case_values *values, const struct key *key, int fish) {
+    const bool is_of_fish = case_table_is_of_fish(key);
+    double slowest = 0;
+    for (int f = 0; f < values->school.n_fish; f++) {
+        const double frequency = fish_parameters_frequency(&values->school.fish[f]);
+        if ((!is_of_fish || f == fish) && frequency > 0) slowest = fmax(slowest, 1 / frequency);
+    }
+    return slowest;
+}
+
+const struct case_beats *case_table_in_beats(const struct case_values *values, const struct key *key, int fish) {
+    for (int i = 0; i < values->n_beats; i++) {
+        if (values->beats[i].key == key && values->beats[i].fish == fish) return &values->beats[i];
+    }
+    return NULL;
+}
+
+void case_table_add_beats(struct case_values *values, struct case_beats beats) {
+    GROW(values->arena, values->beats, values->n_beats + 1);
+    values->beats[values->n_beats++] = beats;
+}
+
 void *case_table_field(const struct key *key, struct case_values *values, struct fish_parameters *fish) {
     return (case_table_is_of_fish(key) ? (char *)fish : (char *)values) + key->offset;
 }
@@ -641,7 +669,7 @@ const char *case_table_word(const struct key *key, int i) {
 
 const char *case_table_type(const struct key *key) {
     static const char *const names[] = {[REAL] = "number",
-                                        [DURATION] = "number, or 'number beats'",
+                                        [DURATION] = "time",
                                         [INTEGER] = "integer",
                                         [CHOICE] = "word",
                                         [METHOD] = "word",
@@ -688,6 +716,14 @@ void case_table_range(const struct key *key, struct text *range) {
 }
 
 void case_table_derive(struct case_values *values, const char *origin) {
+    // times in beats; without a beat they are left unset, and refused by case_check
+    for (int i = 0; i < values->n_beats; i++) {
+        const struct case_beats *const beats = &values->beats[i];
+        const double beat = case_table_beat(values, beats->key, beats->fish);
+        double *const field = case_table_field(beats->key, values, &values->school.fish[beats->fish]);
+        if (beat > 0) *field = text_round(beats->n * beat);
+    }
+
     for (const struct key *key = case_table; key < case_table + case_table_n; key++) {
         const char *const of = key->choice.of ? key->choice.of : key->multiple.of;
         const struct key *const other = of ? case_table_row(of) : NULL;

@@ -14,7 +14,7 @@ enum { CASE_MAX_FISH = 10000 };
 
 enum key_type {
     REAL,         /* double */
-    DURATION,     /* struct duration: a number of seconds, or '3 beats' */
+    DURATION,     /* double: a time in s; in the case also in beats, as '3 beats' or '1/50 beat' */
     INTEGER,      /* int */
     CHOICE,       /* an enum: the index of the word in .words */
     METHOD,       /* enum method: the index of the word in the table of methods (base/methods.h) */
@@ -95,6 +95,16 @@ int case_table_n_fields(const struct key *key, const struct case_values *values)
 
 /* Set the derived defaults, row by row. origin: the name of the file with the case. */
 void case_table_derive(struct case_values *values, const char *origin);
+
+/* What a beat is for a key, in s. A key of a fish counts the beats of this fish, a key of the case those of the slowest
+ * fish; 0: no fish beats. */
+double case_table_beat(const struct case_values *values, const struct key *key, int fish);
+
+/* The time of a key in beats; NULL: the case has it in seconds. */
+const struct case_beats *case_table_in_beats(const struct case_values *values, const struct key *key, int fish);
+
+/* Add a time in beats. */
+void case_table_add_beats(struct case_values *values, struct case_beats beats);
 
 /* The field of a key; fish is ignored unless the key is of a fish. */
 void *case_table_field(const struct key *key, struct case_values *values, struct fish_parameters *fish);

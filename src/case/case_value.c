@@ -21,8 +21,8 @@ struct context {
 
 void case_value_clear(const struct key *key, void *field) {
     switch (key->type) {
-        case REAL: *(double *)field = NAN; break;
-        case DURATION: *(struct duration *)field = (struct duration){NAN, NAN}; break;
+        case REAL:
+        case DURATION: *(double *)field = NAN; break;
         case PAIR: ((double *)field)[0] = ((double *)field)[1] = NAN; break;
         case INTEGER: *(int *)field = 0; break;
         case CHOICE:
@@ -41,7 +41,7 @@ void case_value_clear(const struct key *key, void *field) {
     }
 }
 
-/* "time.end: expects a number in s, got 'soon'" */
+/* "fish[0].length: expects a number in m, got 'long'" */
 static void report_form(const struct context *context, const struct yaml_node *node, const char *form,
                         const char *unit) {
     char shown[64];
@@ -88,20 +88,36 @@ static bool read_number(const struct context *context, const struct yaml_node *n
     return true;
 }
 
-/* A number of seconds, or of beats: '3 beats', '1 beat'. */
+/* Turn the number before the word beat into a number: '3', '0.5' or '1/50'. */
+static bool read_fraction(const char *text, size_t length, double *number) {
+    char part[2][64] = {"", "1"};
+    const char *const slash = memchr(text, '/', length);
+    const size_t before = slash ? (size_t)(slash - text) : length, after = slash ? length - before - 1 : 0;
+    if (before >= sizeof part[0] || after >= sizeof part[1]) return false;
+    snprintf(part[0], sizeof part[0], "%.*s", (int)before, text);
+    if (slash) snprintf(part[1], sizeof part[1], "%.*s", (int)after, slash + 1);
+    double numerator, denominator;
+    if (!text_number(part[0], &numerator) || !text_number(part[1], &denominator) || !(denominator > 0)) return false;
+    *number = numerator / denominator;
+    return true;
+}
+
+/* A number of seconds, or of beats: '3 beats', '1/50 beat'. */
 static void read_duration(const struct context *context, const struct yaml_node *node, struct duration *duration) {
-    static const char form[] = "a number in s, or a number of beats as in '3 beats'";
+    static const char form[] = "a number in s, or beats as in '20 beats' or '1/50 beat'";
     const char *const word = node->kind == YAML_SCALAR ? strchr(node->text, ' ') : NULL;
-    char digits[64];
+    double beats;
     struct context of_number = *context;
     of_number.unit = "";
+    *duration = (struct duration){NAN, NAN};
     if (!word || (strcmp(word, " beats") != 0 && strcmp(word, " beat") != 0) ||
-        (size_t)(word - node->text) >= sizeof digits) {
+        !read_fraction(node->text, (size_t)(word - node->text), &beats)) {
         read_number(&of_number, node, form, true, &duration->seconds);
         return;
     }
 
-    snprintf(digits, sizeof digits, "%.*s", (int)(word - node->text), node->text);
+    char digits[TEXT_NUMBER_BYTES];
+    text_of_number(digits, beats);
     struct yaml_node number = *node;
     number.text = digits;
     struct key in_beats = *context->key;
@@ -267,8 +283,8 @@ void case_value_write(struct text *text, const struct key *key, const void *fiel
     const struct number_list *const list = field;
     const int width = key->type == ROWS ? list->width : 2;
     switch (key->type) {
-        case REAL: text_add_number(text, *(const double *)field); break;
-        case DURATION: text_add_number(text, ((const struct duration *)field)->seconds); break;
+        case REAL:
+        case DURATION: text_add_number(text, *(const double *)field); break;
         case INTEGER: text_add(text, "%d", *(const int *)field); break;
         case CHOICE:
         case METHOD: text_add(text, "%s", case_table_word(key, *(const int *)field)); break;

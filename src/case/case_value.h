@@ -6,11 +6,17 @@
 
 #include "case/case_table.h"
 
+/* A time as the case has it: one of the two is NaN, both after an error. */
+struct duration {
+    double seconds, beats;
+};
+
 /* Mark a field as not read. */
 void case_value_clear(const struct key *key, void *field);
 
 /* Read a node into a cleared field; strings and lists belong to the arena. An error is added to errors with path as the
- * name of the key; the field then stays cleared. */
+ * name of the key; the field then stays cleared. A time is read into a struct duration, because it takes the
+ * frequencies of the fish to turn beats into seconds. */
 void case_value_read(struct arena *arena, const struct key *key, void *field, const struct yaml_node *node,
                      const char *path, struct yaml_errors *errors);
 

@@ -4,6 +4,8 @@
 #ifndef CASE_VALUES_H
 #define CASE_VALUES_H
 
+#include <stdbool.h>
+
 #include "base/methods.h"
 #include "case/sweep_expect.h"
 #include "fish/parameters.h"
@@ -46,6 +48,16 @@ struct case_steady {
     enum yes formation, multipliers;
 };
 
+struct key;
+
+/* A time that the case gives in beats, or that is in beats by default. */
+struct case_beats {
+    const struct key *key;
+    int fish; /* 0 for a key of the whole case */
+    double n;
+    bool is_default;
+};
+
 struct sweep_axis;
 struct sweep_error;
 struct sweep_expectation;
@@ -60,6 +72,8 @@ struct case_values {
     struct case_solver solver;
     struct case_output output;
     struct case_steady steady;
+    int n_beats;
+    struct case_beats *beats; /* (n_beats); the fields of these times are in seconds */
     int n_axes;
     struct sweep_axis *sweep;  /* (n_axes) */
     struct sweep_error *error; /* requested error estimates; NULL: none */

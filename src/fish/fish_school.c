@@ -98,8 +98,8 @@ static void wake_set(struct school *school, const struct school_parameters *para
     const struct wake_parameters *const wake = &parameters->wake;
     school->interval = parameters->shedding_interval;
     find_ratio(school->interval, school->interval_ratio);
-    school->lifetime = wake->lifetime.seconds;
-    school->decay = wake->decay.seconds;
+    school->lifetime = wake->lifetime;
+    school->decay = wake->decay;
     school->shedding = wake->shedding;
     school->kutta = parameters->sheet.kutta;
     school->removed = wake->removed_circulation;

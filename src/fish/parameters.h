@@ -51,12 +51,6 @@ struct fluid_parameters {
     struct number_list walls; /* heights of walls along x: none, one, or two in ascending order, m */
 };
 
-/* A time, in seconds or in beats in the case; seconds are always set, beats is NaN for a time in seconds. */
-struct duration {
-    double seconds;
-    double beats; /* of the slowest beat in the school */
-};
-
 /* A vortex street at the start: two staggered rows of opposite circulation. */
 struct street_parameters {
     int n;                                     /* vortices of both rows; 0: no street */
@@ -68,7 +62,7 @@ struct wake_parameters {
     double smoothing;           /* fraction of the body length */
     double taper, taper_beside; /* fractions of the body length */
     double leg_length;          /* factor of the length of the legs of vortex rings */
-    struct duration lifetime, decay;
+    double lifetime, decay;     /* s */
     enum shedding shedding;
     enum removed_circulation removed_circulation;
     double tolerance;            /* lengths per beat; 0: exact */

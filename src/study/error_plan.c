@@ -30,25 +30,21 @@ static int n_owners(const struct case_values *values, const char *path) {
     return case_table_is_of_fish(case_table_row(path)) ? values->school.n_fish : 1;
 }
 
-/* The value of a key, in beats if the case gives a duration in beats. fish is ignored unless the key is of a fish. */
+/* The value of a key in beats; NULL: in seconds. Only the life of a wake is varied in beats; other times must remain
+ * multiples of each other, and each point of a sweep has its own seconds. */
+static const struct case_beats *plan_in_beats(const struct case_values *values, const char *path) {
+    const bool is_of_wake = strncmp(path, "wake.", 5) == 0;
+    return is_of_wake ? case_table_in_beats(values, case_table_row(path), 0) : NULL;
+}
+
+/* The value of a key, in beats if the case gives it in beats. fish is ignored unless the key is of a fish. */
 static double plan_number_of(const struct case_values *values, const char *path, int fish) {
     const struct key *const key = case_table_row(path);
     const void *const field =
         case_table_field(key, (struct case_values *)(uintptr_t)values, &values->school.fish[fish]);
-    if (key->type == DURATION && !isnan(((const struct duration *)field)->beats)) {
-        return ((const struct duration *)field)->beats;
-    }
-
-    // a duration begins with its seconds
+    const struct case_beats *const beats = plan_in_beats(values, path);
+    if (beats) return beats->n;
     return key->type == REAL || key->type == DURATION ? *(const double *)field : *(const int *)field;
-}
-
-/* Whether the case gives the value of a key as a duration in beats. */
-static bool is_in_beats(const struct case_values *values, const char *path) {
-    const struct key *const key = case_table_row(path);
-    return key->type == DURATION && !isnan(((const struct duration *)case_table_field(
-                                                key, (struct case_values *)(uintptr_t)values, &values->school.fish[0]))
-                                               ->beats);
 }
 
 /* The text of a value, in the unit of plan_number_of. */
@@ -57,7 +53,7 @@ static char *text_of(const struct error_study *study, const struct key *key, dou
     if (key->type == CHOICE) return arena_text(arena, "%s", key->words[(int)value]);
     struct text text = {.arena = arena};
     text_add_number(&text, value);
-    text_add(&text, "%s", is_in_beats(study->values, key->path) ? " beats" : "");
+    text_add(&text, "%s", plan_in_beats(study->values, key->path) ? " beats" : "");
     return text.text;
 }
 
@@ -452,7 +448,7 @@ static bool is_used(const struct error_study *study, const struct sweep_error_ke
     if (strcmp(row->path, "solver.step") == 0) return values->solver.step > 0;
     if (strcmp(row->path, "fish.nodes") != 0 && !has_fluid) return false;
     if (row->kind == SWEEP_DURATION && !study->is_steady) {
-        return row->coarser[0] * values->school.wake.lifetime.seconds < values->time.end;
+        return row->coarser[0] * values->school.wake.lifetime < values->time.end;
     }
 
     return !is_wake || value > 0;
@@ -540,7 +536,7 @@ static enum status choose_keys(struct error_study *study, const struct school *s
 
         struct error_study_key *const key = &study->key[study->n_keys++];
         *key = (struct error_study_key){.row = row,
-                                        .unit = is_in_beats(study->values, row->path) ? " beats" : "",
+                                        .unit = plan_in_beats(study->values, row->path) ? " beats" : "",
                                         .n_levels = 1,
                                         .value = {value},
                                         .member = {-1}};

@@ -208,8 +208,7 @@ static void whole_run(const char *cases, const char *name, int threads) {
     must(simulate_run(&values, &options));
     const double wall = now() - since, cpu = cpu_time() - cpu_since, interval = values.school.shedding_interval;
     const long n_events = lround(values.time.end / interval);
-    const int n_vortices =
-        values.school.n_fish * (int)fmin(values.school.wake.lifetime.seconds / interval, (double)n_events);
+    const int n_vortices = values.school.n_fish * (int)fmin(values.school.wake.lifetime / interval, (double)n_events);
     print_row(name, threads, n_vortices, n_events, interval, wall, cpu, memory());
     case_free(&values);
     remove("phases.nc");
@@ -254,7 +253,7 @@ static void school_begin(struct school_run *run, int n_fish, int is_finite, int 
     read_case(&run->values, text, threads);
     free(text);
     must(simulate_start(NULL, &run->simulation, &run->values, NULL));
-    const long full = lround(run->values.school.wake.lifetime.seconds / run->values.school.shedding_interval);
+    const long full = lround(run->values.school.wake.lifetime / run->values.school.shedding_interval);
     while (run->simulation->state->event < full) must(simulate_step(run->simulation));
     run->megabytes = memory() - before;
 }

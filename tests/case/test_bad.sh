@@ -196,16 +196,16 @@ set_fails set_a_letter_beside_mu 'fluid.u: unknown key; known keys: density' flu
 for open in 0 '*'; do set_fails "set_index_open $open" 'expects the number or the name of a fish, as in fish[0]' "fish[$open=7"; done
 set_fails set_no_dot_after_index "fish[0]nodes: expects a '.' after the ']'" 'fish[0]nodes=7'
 set_fails set_below_a_value 'time.end.x: time.end is a value and has no keys' time.end.x=3
-set_fails set_mistyped '--set time.end=soon: error: time.end: expects a number in s, got '"'soon'" time.end=soon
+set_fails set_mistyped '--set time.end=soon: error: time.end: expects a number in s, or beats as in '"'20 beats' or '1/50 beat', got 'soon'" time.end=soon
 set_fails set_out_of_range '--set fish[*].nodes=3: error: fish[1].nodes: must be from 4 to 10000, got 3' 'fish[*].nodes=3'
-set_fails set_empty '--set time.end=: error: time.end: expects a number in s, got nothing' time.end=
-set_fails set_blank '--set time.end= : error: time.end: expects a number in s, got nothing' 'time.end= '
+set_fails set_empty "--set time.end=: error: time.end: expects a number in s, or beats as in '20 beats' or '1/50 beat', got nothing" time.end=
+set_fails set_blank "--set time.end= : error: time.end: expects a number in s, or beats as in '20 beats' or '1/50 beat', got nothing" 'time.end= '
 set_fails set_bad_yaml "needs ',' between values and ends with ']'" 'fish[0].start.position=[1'
 set_fails set_only_a_comment "expects a value after the '='" 'name=# eel'
 set_fails set_unknown_key_in_map "fish[0].wave.amplitud: unknown key; did you mean 'amplitude'?" 'fish[0].wave={amplitud: 1}'
 set_fails set_include '--set include=[a.yaml]: error: include: is allowed in case files only' 'include=[a.yaml]'
 set_fails set_inconsistent '--set wake.decay=9: error: wake.decay: 9 s is longer than wake.lifetime, 8 s' wake.decay=9
-set_fails set_twice_the_last_counts 'time.end: expects a number in s, got '"'b'" time.end=1 time.end=b
+set_fails set_twice_the_last_counts 'time.end: expects a number in s, or beats as in '"'20 beats' or '1/50 beat', got 'b'" time.end=1 time.end=b
 set_fails set_section_to_a_value "--set wake=3: error: wake: expects a section with keys, got '3'" wake=3
 expect set_and_bad_file 2 "time.ned: unknown key" crlf.yaml --set nmae=3
 

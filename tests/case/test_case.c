@@ -54,8 +54,8 @@ TEST(the_defaults_are_those_of_the_reference) {
     NEAR(s.school.wake.taper_beside, 0.07, 0, 0);
     assert_int_equal(s.school.sheet.curve, BODY_LINE_SMOOTH);
     NEAR(s.school.sheet.smoothing, 0.05, 0, 0);
-    NEAR(s.school.wake.lifetime.seconds, 8, 0, 0);
-    NEAR(s.school.wake.decay.seconds, 2, 0, 0);
+    NEAR(s.school.wake.lifetime, 8, 0, 0);
+    NEAR(s.school.wake.decay, 2, 0, 0);
     assert_int_equal(s.school.wake.shedding, SHEDDING_SHEET);
     assert_int_equal(s.school.sheet.kutta, KUTTA_EDGE);
     assert_int_equal(s.school.sheet.collocation, COLLOCATION_CHEBYSHEV);
@@ -117,9 +117,49 @@ TEST(lifetime_and_fade_may_be_in_beats) {
         char text[512];
         snprintf(text, sizeof text, "format: 1\ntime: {end: 1}\n%sfish: [%s]\n", cases[i].wake, cases[i].fish);
         struct case_values s = parse(text);
-        NEAR(s.school.wake.lifetime.seconds, cases[i].lifetime, 0, 1e-15);
-        NEAR(s.school.wake.decay.seconds, cases[i].decay, 0, 1e-15);
+        NEAR(s.school.wake.lifetime, cases[i].lifetime, 0, 1e-15);
+        NEAR(s.school.wake.decay, cases[i].decay, 0, 1e-15);
     }
+}
+
+// a key of a fish counts the beats of this fish, a key of the case those of all
+TEST(every_time_may_be_in_beats) {
+    struct case_values s = parse(
+        "format: 1\ntime: {end: 20 beats, shedding_interval: 1/50 beat, output_interval: 1/5 beat,\n"
+        "  checkpoint_interval: 2 beats}\noutput: {wake_interval: 1 beat}\n"
+        "fish: [{wave: {frequency: 2, ramp: 3 beats}, body: {relaxation_time: 1/40 beat}},\n"
+        "  {wave: {frequency: 2, ramp: 4}, control: {law: course, ramp: 0.5 beats, course_filter: 1/8 beat}}]\n");
+    NEAR(s.time.end, 10, 0, 0);
+    NEAR(s.school.shedding_interval, 0.01, 0, 0);
+    NEAR(s.time.output_interval, 0.1, 0, 0);
+    NEAR(s.time.checkpoint_interval, 1, 0, 0);
+    NEAR(s.output.wake_interval, 0.5, 0, 0);
+    NEAR(s.school.fish[0].wave.ramp, 1.5, 0, 0);
+    NEAR(s.school.fish[0].body.relaxation_time, 0.0125, 0, 0);
+    NEAR(s.school.fish[1].wave.ramp, 4, 0, 0);
+    NEAR(s.school.fish[1].control.ramp, 0.25, 0, 0);
+    NEAR(s.school.fish[1].control.course_filter, 0.0625, 0, 0);
+}
+
+TEST(times_are_rounded_to_an_interval_in_beats_with_a_note) {
+    struct case_values s =
+        parse("format: 1\ntime: {end: 3.001, shedding_interval: 1/50 beat, output_interval: 0.211}\nfish: [{}]\n");
+    NEAR(s.time.end, 3.02, 0, 1e-15);
+    NEAR(s.time.output_interval, 0.22, 0, 1e-15);
+    assert_non_null(strstr(s.notes, "time.end: 3.001 s is not an integer multiple"));
+    assert_non_null(strstr(s.notes, "time.output_interval: 0.211 s is not an integer multiple"));
+}
+
+// of two beats of a school neither is meant more than the other
+TEST(beats_of_no_fish_or_of_unlike_fish_are_refused) {
+    is_refused("format: 1\ntime: {end: 5 beats}\nfish: [{wave: {frequency: 0}}]\n",
+               "time.end: is in beats, but no fish beats: give seconds");
+    is_refused("format: 1\ntime: {end: 5 beats}\nfish: [{}, {wave: {frequency: 2}}]\n",
+               "time.end: is in beats, but fish[0] beats with 1 Hz and fish[1] with 2 Hz: give seconds");
+    is_refused("format: 1\ntime: {end: 5}\nfish: [{}, {wave: {frequency: 0, ramp: 1 beat}}]\n",
+               "fish[1].wave.ramp: is in beats, but the fish does not beat: give seconds");
+    is_refused("format: 1\ntime: {end: 5, shedding_interval: 1/0 beat}\nfish: [{}]\n", "got '1/0 beat'");
+    is_refused("format: 1\ntime: {end: 5, checkpoint_wall: 3 beats}\nfish: [{}]\n", "expects a number in s");
 }
 
 TEST(derived_defaults_follow_what_they_derive_from) {
@@ -129,7 +169,7 @@ TEST(derived_defaults_follow_what_they_derive_from) {
         "  {control: {waypoints: [[1, 2]]}}]\n");
     NEAR(s.time.output_interval, 0.2, 0, 1e-15);
     NEAR(s.output.wake_interval, 0.2, 0, 1e-15);
-    NEAR(s.school.wake.decay.seconds, 0.75, 0, 1e-15);
+    NEAR(s.school.wake.decay, 0.75, 0, 1e-15);
     assert_string_equal(s.name, "x");
     assert_string_equal(s.school.fish[0].name, "fish1");
     assert_string_equal(s.school.fish[1].name, "fish2");
@@ -228,8 +268,8 @@ TEST(preset_published_sets_the_options_of_the_article) {
     assert_int_equal(s.school.sheet.kutta, KUTTA_RATE);
     assert_int_equal(s.school.wake.shedding, SHEDDING_IMPULSIVE);
     NEAR(s.school.sheet.smoothing, 0.01, 0, 0);
-    NEAR(s.school.wake.lifetime.seconds, 2, 0, 0);
-    NEAR(s.school.wake.decay.seconds, 0, 0, 0);
+    NEAR(s.school.wake.lifetime, 2, 0, 0);
+    NEAR(s.school.wake.decay, 0, 0, 0);
     assert_int_equal(s.school.wake.removed_circulation, REMOVED_RETAINED);
     assert_int_equal(s.school.fish->drag.law, DRAG_QUADRATIC);
     NEAR(s.school.fish->drag.normal, 4, 0, 0);
@@ -347,7 +387,7 @@ TEST_WITH(an_include_is_weaker_than_the_file_that_includes_it, make_folder, remo
     struct case_values s = read_file("case.yaml");
     NEAR(s.school.fluid.density, 1025, 0, 0);
     NEAR(s.school.fluid.velocity[0], 3, 0, 0);
-    NEAR(s.school.wake.lifetime.seconds, 4, 0, 0);
+    NEAR(s.school.wake.lifetime, 4, 0, 0);
     assert_int_equal(s.school.n_fish, 1);  // lists replace
     assert_int_equal(s.school.fish->nodes, 25);
     assert_string_equal(s.name, "case");
@@ -360,7 +400,7 @@ TEST_WITH(includes_are_relative_to_their_file_and_the_last_is_strongest, make_fo
     write_file("water.yaml", "name: water\nwake: {lifetime: 4, smoothing: 0.4}\n");
     write_file("case.yaml", "include: [below/more.yaml]\nformat: 1\ntime: {end: 1}\nfish: [{}]\n");
     struct case_values s = read_file("case.yaml");
-    NEAR(s.school.wake.lifetime.seconds, 3, 0, 0);
+    NEAR(s.school.wake.lifetime, 3, 0, 0);
     NEAR(s.school.wake.smoothing, 0.4, 0, 0);
     assert_string_equal(s.name, "case");  // of no include, however deep and at any place of the list
     // an absolute path is relative to nothing
@@ -369,7 +409,7 @@ TEST_WITH(includes_are_relative_to_their_file_and_the_last_is_strongest, make_fo
     snprintf(absolute, sizeof absolute, "include: [%s/water.yaml]\nformat: 1\ntime: {end: 1}\nfish: [{}]\n", folder);
     write_file("below/.yaml", absolute);
     s = read_file("below/.yaml");
-    NEAR(s.school.wake.lifetime.seconds, 4, 0, 0);
+    NEAR(s.school.wake.lifetime, 4, 0, 0);
     assert_string_equal(s.name, ".yaml");  // a hidden file has a name and no ending
     assert_int_equal(unlink("below/.yaml"), 0);
     static const char text[] = "include: [below/more.yaml, water.yaml]\nformat: 1\ntime: {end: 1}\nfish: [{}]\n";
@@ -377,7 +417,7 @@ TEST_WITH(includes_are_relative_to_their_file_and_the_last_is_strongest, make_fo
     s = read_file("case.yaml");
     assert_string_equal(s.name, "case");
     assert_int_equal(case_parse(&s, text, strlen(text), "memory", *state, 0, NULL), STATUS_OK);
-    NEAR(s.school.wake.lifetime.seconds, 4, 0, 0);
+    NEAR(s.school.wake.lifetime, 4, 0, 0);
     case_free(&s);
 }
 
@@ -477,6 +517,24 @@ TEST(a_case_shown_reads_back_bit_for_bit) {
         are_equal(&first, &second);
         assert_string_equal(shown, case_show(second.arena, &second));
     }
+}
+
+// as given, unless it was rounded
+TEST(a_time_in_beats_is_shown_as_given_and_reads_back_bit_for_bit) {
+    struct case_values first = parse(
+        "format: 1\ntime: {end: 7 beats, shedding_interval: 1/30 beat, output_interval: 1/7 beat}\n"
+        "wake: {lifetime: 3 beats}\nfish: [{wave: {frequency: 0.7, ramp: 1 beat}}]\n");
+    const char *const shown = case_show(first.arena, &first);
+    assert_non_null(strstr(shown, "end: 7 beats "));
+    assert_non_null(strstr(shown, "lifetime: 3 beats "));
+    assert_non_null(strstr(shown, "ramp: 1 beat "));
+    assert_null(strstr(shown, "output_interval: 0.14"));
+    struct case_values second = parse(shown);
+    NEAR(second.time.end, first.time.end, 0, 0);
+    NEAR(second.school.shedding_interval, first.school.shedding_interval, 0, 0);
+    NEAR(second.time.output_interval, first.time.output_interval, 0, 0);
+    NEAR(second.school.fish->wave.ramp, first.school.fish->wave.ramp, 0, 0);
+    assert_string_equal(shown, case_show(second.arena, &second));
 }
 
 TEST(a_shown_case_has_neither_preset_nor_defaults) {

@@ -205,7 +205,7 @@ TEST(a_duration_keeps_the_unit_of_the_case) {
         assert_string_equal(row[error_plan_column(&study, "wake.lifetime", 0)], examples[i].longest);
         assert_string_equal(row[error_plan_column(&study, "wake.decay", 0)], examples[i].fade);
         const struct case_values member = member_of(study.study, key->member[0]);
-        NEAR(member.school.wake.lifetime.seconds, i == 0 ? 16 : i == 1 ? 8 : 6, 0, 1e-12);
+        NEAR(member.school.wake.lifetime, i == 0 ? 16 : i == 1 ? 8 : 6, 0, 1e-12);
     }
     // a run with an earlier end keeps the whole wake
     struct error_study study =
