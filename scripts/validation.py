@@ -4,14 +4,15 @@
     scripts/validation.py [TABLE ...] PICTURE      TABLE: of `build/verify/verify SECTION -o TABLE`, sections validation and
                                                    tandem; run now if there is none
 
-The reference of every panel has the marks of REFERENCE, open with the colour of its series; this program has lines or
-filled marks. A grey bar is the spread of the source, or 5 % where the source has one value.
+An experiment has open marks in every panel; this program has a line, or filled marks beside the line of a theory. A grey
+bar is the spread of the source, or 5 % where the source has one value.
 """
 
 import csv
 import json
 import math
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -20,6 +21,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 from matplotlib import pyplot
+from matplotlib.lines import Line2D
 from shoal._plot_style import LINES, STYLE, paper
 
 HERE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
@@ -50,6 +52,11 @@ def lift_slope(depth):
         return abs(json.loads(done.stdout)["steady_lift"][0]) / (0.5 * depth * math.radians(2))
 
 
+def open_marks(k):
+    """The marks of series k of an experiment."""
+    return {"ls": "none", "marker": "os^"[k], "ms": 4, "mfc": "none", "color": LINES[k]}
+
+
 def draw(tables, picture):
     lines = []
     for table in tables:
@@ -63,16 +70,16 @@ def draw(tables, picture):
         for k, psi in enumerate((90, 75)):
             of = f"{name}_{psi}" if name == "foil_thrust" else name
             experiment, here = ("experiment", "here") if name == "foil_thrust" else (f"experiment, psi {psi}", f"psi {psi}")
-            for word, style in ((experiment, {"ls": "none", "marker": "os"[k]}), (here, {"ls": ("-", "--")[k]})):
+            for word, style in ((experiment, open_marks(k)), (here, {"ls": ("-", "--")[k], "color": LINES[k]})):
                 some = [(x, y) for figure_name, series, x, y in points if figure_name == of and series == word]
-                panel.plot(*zip(*sorted(some)), color=LINES[k], ms=4, label=f"{'experiment' if word == experiment else 'here'}, {psi}°", **style)
+                panel.plot(*zip(*sorted(some)), label=f"{'experiment' if word == experiment else 'here'}, {psi}°", **style)
         panel.set(xlabel="Strouhal number", ylabel=label, ylim=(0, None))
         panel.legend(loc="upper left", fontsize=7)
 
     # wings of any depth
     wings = {float(row["w_over_L"]): float(row["lift_slope"]) for row in read("lifting_surface.csv")}
     depths = sorted(wings)
-    axes[1, 0].plot(depths, [wings[depth] for depth in depths], "o", color=LINES[0], ms=4, label="lifting surface")
+    axes[1, 0].plot(depths, [wings[depth] for depth in depths], ":", color="0.3", label="lifting surface")
     axes[1, 0].plot(depths, [lift_slope(depth) for depth in depths], "-", color=LINES[1], label="here")
     axes[1, 0].set(xscale="log", xlabel="depth / length", ylabel="lift slope", ylim=(0, None))
     axes[1, 0].legend(loc="upper left", fontsize=7)
@@ -80,9 +87,11 @@ def draw(tables, picture):
     # Navier-Stokes: the result over the middle of the reference
     names = []
     for line in lines:
-        if line[0] != "row" or not line[3].startswith("Navier-Stokes"):
+        # a single body, with the spread of the references if there are several; pairs have a table of their own
+        source = re.fullmatch(r"Navier-Stokes(?:, (\S+) to (\S+))?", line[3]) if line[0] == "row" else None
+        if not source:
             continue
-        spread = [float(word) for word in line[3].replace(",", "").split() if word[0].isdigit()] or [float(line[4])]
+        spread = [float(word or line[4]) for word in source.groups()]
         middle, low, high, obtained = float(line[4]), min(spread), max(spread), float(line[5])
         half = max((high - low) / 2 / middle, 0.05)
         words = line[2].split(",")[0].replace("heave of ", "").replace("an ell", "ell").replace("a NACA 0012", "NACA").replace(" at", "")
@@ -90,16 +99,19 @@ def draw(tables, picture):
         axes[1, 1].plot([1 - half, 1 + half], [-len(names)] * 2, color="0.6", lw=5, solid_capstyle="butt")
         axes[1, 1].plot(obtained / middle, -len(names), "o", color=LINES[1], ms=4)
     axes[1, 1].axvline(1, color="0.3", lw=0.6)
+    bar = Line2D([], [], color="0.6", lw=5, label="spread of the references, at least 5 %")
+    here = Line2D([], [], ls="none", marker="o", ms=4, color=LINES[1], label="here")
+    axes[1, 1].legend(handles=[bar, here], loc="lower right", bbox_to_anchor=(1, 1), ncols=2, fontsize=6, handlelength=1.2)
     axes[1, 1].set_yticks([-i - 1 for i in range(len(names))], names, size=6)
     axes[1, 1].set(xlabel="here / Navier-Stokes", xlim=(0, 2))
 
     # trout of three lengths
     for k, length in enumerate(("0.1", "0.2", "0.4")):
-        for word, style in (("measured", {"ls": "-"}), ("here", {"ls": "none", "marker": "os^"[k], "ms": 4})):
+        for word, style in (("measured", open_marks(k)), ("here", {"ls": ("-", "--", "-.")[k], "color": LINES[k]})):
             some = [(x, y) for figure_name, series, x, y in points if figure_name == "trout" and series == f"{word}, {length} m"]
-            axes[2, 0].plot(*zip(*some), color=LINES[k], label=f"{length} m" if word == "here" else None, **style)
+            axes[2, 0].plot(*zip(*some), label=f"{length} m, {'experiment' if word == 'measured' else 'here'}", **style)
     axes[2, 0].set(xlabel="beat frequency [Hz]", ylabel="stride [lengths]", ylim=(0, None))
-    axes[2, 0].legend(loc="lower right", fontsize=7, title="line: measured\nmark: here", title_fontsize=7)
+    axes[2, 0].legend(loc="lower right", fontsize=7)
 
     # a plate in the wake of another one
     for series, label, style in (("published: integers", "integers", {"ls": ":", "color": "0.3"}),
