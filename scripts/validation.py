@@ -99,7 +99,7 @@ def draw(tables, picture):
         axes[1, 1].plot([1 - half, 1 + half], [-len(names)] * 2, color="0.6", lw=5, solid_capstyle="butt")
         axes[1, 1].plot(obtained / middle, -len(names), "o", color=LINES[1], ms=4)
     axes[1, 1].axvline(1, color="0.3", lw=0.6)
-    bar = Line2D([], [], color="0.6", lw=5, label="spread of the references, at least 5 %")
+    bar = Line2D([], [], color="0.6", lw=5, label="references, at least ±5 %")
     here = Line2D([], [], ls="none", marker="o", ms=4, color=LINES[1], label="here")
     axes[1, 1].legend(handles=[bar, here], loc="lower right", bbox_to_anchor=(1, 1), ncols=2, fontsize=6, handlelength=1.2)
     axes[1, 1].set_yticks([-i - 1 for i in range(len(names))], names, size=6)
