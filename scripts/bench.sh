@@ -28,16 +28,7 @@ heading() {
 
 # Run a command; print wall seconds, CPU seconds and peak memory in MB.
 measured() {
-    /usr/bin/python3 - "$@" <<'PYTHON'
-import resource, subprocess, sys, time
-start = time.perf_counter()
-code = subprocess.run(sys.argv[1:], stdin=subprocess.DEVNULL).returncode
-wall = time.perf_counter() - start
-used = resource.getrusage(resource.RUSAGE_CHILDREN)
-if code:
-    sys.exit(f"exit code {code}: {' '.join(sys.argv[1:])}")
-print(f"{wall:.2f} {used.ru_utime + used.ru_stime:.2f} {used.ru_maxrss / 1024:.0f}")
-PYTHON
+    /usr/bin/python3 "$root/tests/bench/measured.py" "$@"
 }
 
 # A count per event by `shoal info` of the result run.nc: steps, newton_iterations or jacobian_evaluations.

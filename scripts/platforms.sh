@@ -91,13 +91,7 @@ check_same() {
     for case in demo pair; do
         build/shoal run cases/$case.yaml --set time.end=1 --force -q -o "$work/here.nc"
         enter "$1" build/shoal run cases/$case.yaml --set time.end=1 --force -q -o /tmp/there.nc
-        /usr/bin/python3 - "$work/here.nc" "$1/tmp/there.nc" <<'PYTHON'
-import sys, netCDF4, numpy
-here, there = (netCDF4.Dataset(path) for path in sys.argv[1:])
-distance = numpy.abs(here["x"][-1] - there["x"][-1]).max()
-print(f"{sys.argv[1]}: distance of the nodes {distance:.1e} m, limit 1e-12")
-sys.exit(float(here["time"][-1]) != 1 or not distance <= 1e-12)
-PYTHON
+        scripts/packaging/same_nodes.py "$work/here.nc" "$1/tmp/there.nc"
     done
 }
 
@@ -197,23 +191,7 @@ run_platform() {  # name, release, architecture, compiler, checks
 write_rows() {  # document, name...
     local document=$1
     shift
-    /usr/bin/python3 - "$document" "$work" "$@" <<'PYTHON'
-import pathlib, sys
-document, work, names = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3:]
-lines = document.read_text().split("\n")
-first = lines.index("`make test-platforms`") + 4  # an empty line, heads, rule
-last = first
-while lines[last].startswith("|"):
-    last += 1
-rows = {line.split()[1]: line for line in lines[first:last]}
-for name in names:
-    rows.pop(name, None)
-    row = (work / f"{name}.row").read_text().rstrip("\n")
-    if row:
-        rows[name] = row
-lines[first:last] = [rows[name] for name in sorted(rows)]
-document.write_text("\n".join(lines))
-PYTHON
+    scripts/packaging/write_platforms.py "$document" "$work" "$@"
 }
 
 document=''

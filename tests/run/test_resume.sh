@@ -166,36 +166,21 @@ printf 'x' | dd of=run.ckpt bs=1 seek=3000 conv=notrunc status=none
 run resume run.ckpt -q
 check a_damaged_checkpoint_falls_back eval 'has err "run.ckpt: cannot be used: damaged behind byte" &&
     has err "; resuming from run.ckpt.previous" && same run.nc reference.nc'
-cat >nan.py <<'end'
-"""nan.py CHECKPOINT SECTION [TEXT]: end a section with a value that is not a number, or a text; the checksums fit."""
-import struct, sys, zlib
-
-whole = open(sys.argv[1], "rb").read()
-out, at = bytearray(whole[:28]), 28
-while at < len(whole):
-    (n,) = struct.unpack("Q", whole[at + 24 : at + 32])
-    section = bytearray(whole[at : at + 32 + n])
-    if section[:24].split(b"\0")[0].decode() == sys.argv[2]:
-        section[-8:] = sys.argv[3].encode() if sys.argv[3:] else struct.pack("d", float("nan"))
-    out += section + struct.pack("I", zlib.crc32(section))
-    at += 36 + n
-open(sys.argv[1], "wb").write(out)
-end
 for field in y wake.circulation balance.work closest.before; do
     restore
-    /usr/bin/python3 nan.py run.ckpt $field
+    /usr/bin/python3 "$root/tests/run/nan.py" run.ckpt $field
     refused "a checkpoint with NaN in $field" 4 "the checkpoint of run.nc cannot be used: value" resume run.ckpt -q
     check "it says where: $field" has err "of '$field' is nan"
 done
 restore
-/usr/bin/python3 nan.py run.ckpt processor ' of 1971'
+/usr/bin/python3 "$root/tests/run/nan.py" run.ckpt processor ' of 1971'
 run resume run.ckpt -v
 check another_processor_is_a_note has err " of 1971: last bits may differ"
 cp out summary
 run info run.nc
 check verbose_prints_the_summary_of_info cmp out summary
 restore
-/usr/bin/python3 nan.py run.ckpt processor ' of 1971'
+/usr/bin/python3 "$root/tests/run/nan.py" run.ckpt processor ' of 1971'
 run resume run.ckpt -q
 check quiet_prints_no_note eval 'test "$code" = 0 -a ! -s out -a -z "$(grep note: err)"'
 restore

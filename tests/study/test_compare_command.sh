@@ -92,19 +92,7 @@ check what_it_did_is_said grep -qE \
     '^rk4, rtol 1e-3 failed: too slow: at t = [0-9.e-]+ s after [0-9.]+ s, [1-9][0-9]* steps and [1-9][0-9]* evaluations$' out
 check its_cost_to_the_end_is_marked grep -qE '^ +rk4 +1e-3 .* ~[0-9.e+]+ +- +~[0-9.e+]+ +~[0-9.e+]+ +0 +0 .* failed$' out
 check the_mark_is_explained has out '~: extrapolated to the end, t = 2 s, from what was done within --limit.'
-cat >late.py <<'PYTHON'
-import netCDF4
-
-data = netCDF4.Dataset("late.nc")
-late = next(m for m, status in enumerate(data["status"][:]) if status.startswith("failed: too slow"))
-t = float(data["time"][late])
-assert 0 < t < 2, t
-for done, to_end in (("residual_evaluations", "evaluations_to_end"), ("wall_time", "wall_time_to_end")):
-    assert data[done][late] > 0
-    assert abs(data[to_end][late] - data[done][late] * 2 / t) < 1e-6 * data[to_end][late], (done, t)
-    assert abs(data[to_end][0] - data[done][0]) == 0
-PYTHON
-check python_reads_both /usr/bin/python3 late.py
+check python_reads_both /usr/bin/python3 "$root/tests/study/late.py" late.nc
 cp out printed
 run info late.nc
 check info_prints_it_too cmp <(sed 1,8d out) printed

@@ -198,27 +198,17 @@ check sensitivities_end_with_0 test "$code" = 0
 check a_number_has_its_steps_and_its_error grep -qE '^fish.body.modulus +8.149e\+04 Pa +\+-4, 8 % +\+0\.[0-9]+ +0\.0*[0-9]+ *$' out
 check no_numerical_key_is_varied eval '! grep -q "fish.nodes" out'
 check the_value_has_no_error_bar grep -qE '^steady_lift of foil: [0-9.]+ N$' out
-cat >sums.py <<'end'
-"""sums.py FOLDER QUANTITY SUM KEY=FACTOR...: a sum of sensitivities is as dimensional analysis has it, within its errors."""
-import csv, sys
-folder, quantity, want, *terms = sys.argv[1:]
-rows = {row["key"]: row for row in csv.DictReader(open(f"{folder}/error.csv")) if row["quantity"] == f"sensitivity_{quantity}"}
-terms = [(rows[key], float(factor)) for key, factor in (term.split("=") for term in terms)]
-got = sum(factor * float(row["value"]) for row, factor in terms)
-error = sum(abs(factor) * float(row["error"]) for row, factor in terms)
-assert abs(got - float(want)) <= error < 0.05, (got, want, error)
-end
-check density_and_modulus_make_1 /usr/bin/python3 sums.py lift steady_lift 1 fish.body.modulus=1 fluid.density=1
-check length_makes_2 /usr/bin/python3 sums.py lift steady_lift 2 fish.length=1
+check density_and_modulus_make_1 /usr/bin/python3 "$root/tests/study/sums.py" lift steady_lift 1 fish.body.modulus=1 fluid.density=1
+check length_makes_2 /usr/bin/python3 "$root/tests/study/sums.py" lift steady_lift 2 fish.length=1
 # the reactive swimmer has no viscosity: times scale with the beat, also the interval that it is tied to
 run error swimmer.yaml --of steady_speed --of steady_cost_of_transport --sensitivity=wave.frequency,modulus,length,suction \
     -o swims --set error=none
 check what_has_no_effect_is_refused has err 'error.sensitivity: fish.pressure.suction changes nothing in this case'
 run error swimmer.yaml --of steady_speed --of steady_cost_of_transport --sensitivity=wave.frequency,modulus,length -o swims \
     --set error=none -j 2
-check times_make_the_speed /usr/bin/python3 sums.py swims steady_speed 1 fish.wave.frequency=1 fish.body.modulus=2
-check times_make_the_cost /usr/bin/python3 sums.py swims steady_cost_of_transport 2 fish.wave.frequency=1 fish.body.modulus=2
-check lengths_make_the_speed /usr/bin/python3 sums.py swims steady_speed 1 fish.length=1 fish.body.modulus=2
+check times_make_the_speed /usr/bin/python3 "$root/tests/study/sums.py" swims steady_speed 1 fish.wave.frequency=1 fish.body.modulus=2
+check times_make_the_cost /usr/bin/python3 "$root/tests/study/sums.py" swims steady_cost_of_transport 2 fish.wave.frequency=1 fish.body.modulus=2
+check lengths_make_the_speed /usr/bin/python3 "$root/tests/study/sums.py" swims steady_speed 1 fish.length=1 fish.body.modulus=2
 sed -n '/^steady_speed/,$p' out >table
 run gather swims
 check gather_has_the_sensitivities cmp out table
@@ -344,68 +334,8 @@ check a_number_of_the_run_is_not_of_a_fish test "$(grep -c '^steps: ' out)-$(gre
 
 # ---- the two tables of a study
 
-cat >budget.py <<'end'
-"""budget.py FOLDER...: error.csv and study.nc say the same, and the units of study.nc are those of its quantities."""
-import csv, sys, netCDF4, numpy as np
-
-
-def text(values):
-    return [b"".join(row).rstrip(b"\0").decode() for row in np.ma.getdata(values)]
-
-
-def near(got, want, rtol, what):
-    assert np.isclose(float(got), float(want), rtol=rtol, atol=1e-12, equal_nan=True), (what, got, want)
-
-
-for folder in sys.argv[1:]:
-    data = netCDF4.Dataset(f"{folder}/study.nc")
-    data.set_auto_mask(False)
-    data.set_auto_chartostring(False)
-    for name, variable in data.variables.items():
-        prefix, _, quantity = name.partition("_")
-        if variable.dtype == "S1" or name.startswith("key_value"):
-            continue
-        unit = data[quantity].units if prefix in ("stated", "bar", "lowest", "highest", "part", "shift", "spread") else None
-        assert variable.units == (unit or ("1" if prefix in ("key", "point", "member") else variable.units)), name
-
-    keys, fish, points = text(data["key_name"][:]), text(data["fish"][:]), []
-    n_rows = 0
-    for row in csv.DictReader(open(f"{folder}/error.csv")):
-        swept = list(row.values())[10:]
-        if swept not in points:
-            points.append(swept)
-        quantity, p, f = row["quantity"], len(points) - 1, fish.index(row["fish"]) if row["fish"] else 0
-
-        def of(name, k=0, quantity=f"_{quantity}", place={"point": p, "fish": f}):
-            variable = data[name + quantity]
-            return variable[tuple({**place, "key": k}[d] for d in variable.dimensions)]
-
-        model = row["key"] if row["key"] in ("lowest", "highest") else "stated"
-        value, error = of("stated"), row["error"]
-        near(row["value"], of(model), 1e-8, row)
-        near(row["percent"], 100 * float(error) / abs(value), 1e-2, row)
-        n_rows += 1
-        if row["key"] == "sum":
-            near(error, of("bar"), 1e-2, row)
-            part = [of("part", k) for k in range(len(keys)) if not data["key_is_choice"][k]]
-            shift, spread = ([of(name, k) for k in range(len(keys)) if not data["key_is_choice"][k]]
-                             for name in ("shift", "spread"))
-            bar = min(np.nansum(part), abs(np.nansum(shift)) + np.nansum(spread))
-            assert points != [[]] or np.isclose(bar, of("bar")), row
-        elif model != "stated":
-            near(error, abs(of(model) - value), 1e-2, row)
-        else:
-            k = keys.index(row["key"])
-            near(error, of("part", k), 1e-2, row)
-            near(row["order"], of("key_order", k), 1e-2, row)
-            assert data["key_is_choice"][k] == row["verdict"].startswith("a choice of the model"), row
-            levels = row["levels"].split()
-            stated = [level[0] == "[" for level in reversed(levels)].index(True)
-            assert len(levels) == of("key_levels", k, "") and stated == of("key_stated", k, ""), row
-    assert n_rows > 0 and len(points) == (len(data.dimensions["point"]) if "point" in data.dimensions else 1)
-end
 for folder in foil-error swimmer-study models along five one few; do
-    check "error.csv and study.nc say the same: $folder" /usr/bin/python3 budget.py "$folder"
+    check "error.csv and study.nc say the same: $folder" /usr/bin/python3 "$root/tests/study/budget.py" "$folder"
 done
 
 finish
