@@ -223,6 +223,7 @@ docs: $(generated_docs)  ## write cases.md, output.md and case.schema.json in do
 	$(quiet)cp $^ doc/
 
 numbers: deps  ## list output and tables of README.md and doc/*.md that differ from the program (an hour); WRITE=1: replace
+	@scripts/install-deps.sh python3-scipy
 	@$(parallel) all
 	@code=0; scripts/documents.py $(if $(WRITE),--write) README.md doc/*.md || code=1; \
 	scripts/notebook.py $(if $(WRITE),,--check) || code=1; \
@@ -231,7 +232,7 @@ numbers: deps  ## list output and tables of README.md and doc/*.md that differ f
 	done; exit $$code
 
 figures: deps  ## draw the figures of the documents that are older than case, script or results (LIST=1: say which; ALL=1; NAME=...)
-	@scripts/install-deps.sh python3-pil
+	@scripts/install-deps.sh python3-pil ffmpeg
 	@$(parallel) all
 	@scripts/figures.py $(if $(LIST),--list) $(if $(ALL),--all) $(NAME)
 

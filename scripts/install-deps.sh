@@ -6,7 +6,7 @@
 set -euo pipefail
 
 declare -rA sets=(
-    [@extra]='chromium python3-vtk9 python3-jsonschema python3-yaml groff mandoc man-db bsdextrautils
+    [@extra]='python3-scipy ffmpeg chromium python3-vtk9 python3-jsonschema python3-yaml groff mandoc man-db bsdextrautils
         python3-pip python3-venv python3-setuptools python3-wheel'  # make test-extra
     [@site]='python3-sphinx python3-myst-parser furo doxygen python3-breathe jupyter-nbconvert python3-ipykernel'
     [@slurm]='slurm-wlm munge'
@@ -22,7 +22,7 @@ readonly packages=(
     gcc g++ make libc6-dev pkg-config
     libsundials-dev libsuitesparse-dev liblapacke-dev liblapack-dev libblas-dev libnetcdf-dev libyaml-dev zlib1g-dev
     libcmocka-dev netcdf-bin clang-format  # tests and style
-    python3 python3-numpy python3-scipy python3-matplotlib python3-netcdf4 python3-xarray ffmpeg  # pictures and movies
+    python3 python3-numpy python3-matplotlib python3-netcdf4 python3-xarray  # the module, and pictures
     "${more[@]}"
 )
 
