@@ -114,13 +114,20 @@ static const double disturbance = 0.04, smallest = 0.02, largest = 0.06, shorter
  * the wake of the first fish reaches the last one. SAMPLES: of the errors of the responses. */
 enum { MEMORY = 3, MOST_MEMORY = 12, SAMPLES = 16 };
 
+/* Central differences have two sizes, the first of which is twice the second. */
+enum { SIZES = 2 };
+
 struct disturbances {
     struct steady_problem *problem;
     int n_memory;
     double size;                       /* of an increment, in the scale of the quantity */
     struct state *kept;                /* undisturbed state */
     double *start, *to;                /* unknowns of the kept state, and at the start of a beat      (n_unknowns) */
-    double *base, *above, *below;      /* unknowns after each beat                        (n_unknowns, n_memory) */
+    double *base;                      /* unknowns after each undisturbed beat            (n_unknowns, n_memory) */
+    double *sizes;                     /* the larger size of each unknown                             (n_unknowns) */
+    double *central, *second;          /* differences and half sums less the base, of each size
+                                          (n_unknowns, n_memory, n_unknowns, SIZES) */
+    double *above, *below;             /*                                                 (n_unknowns, n_memory) */
     double *response, *error, *sample; /* and its error                     (n_unknowns, n_unknowns, n_memory) */
 };
 
@@ -140,25 +147,55 @@ static enum status follow_disturbance(struct disturbances *all, int j, double si
     return STATUS_OK;
 }
 
-// the response to each unknown by central differences; the difference of the two one-sided differences is an estimate
-// of the noise, and a bound of the curvature, which cancels
+// differences of both sizes of unknown j
+static enum status take_differences(struct disturbances *all, int j, double size) {
+    const int n = all->problem->n_unknowns, n_seen = n * all->n_memory;
+    all->sizes[j] = size;
+    for (int s = 0; s < SIZES; s++, size /= 2) {
+        double *const central = all->central + n_seen * (j + n * s), *const second = all->second + n_seen * (j + n * s);
+        TRY(follow_disturbance(all, j, size, all->above));
+        TRY(follow_disturbance(all, j, -size, all->below));
+        for (int i = 0; i < n_seen; i++) {
+            central[i] = (all->above[i] - all->below[i]) / (2 * size);
+            second[i] = (all->above[i] + all->below[i]) / 2 - all->base[i];
+        }
+    }
+    return STATUS_OK;
+}
+
+/* With the standard deviation e of an unknown after a beat, which is noise of the wake, central(h) differs from
+ * central(h/2) by the truncation 3/4 c h^2 and by noise of the variance 5/2 (e/h)^2, and second(h) - 4 second(h/2), in
+ * which the curvature cancels, has the variance 35/2 e^2. The part of the difference that is truncation is extrapolated
+ * to h = 0; the error has the noise and what is left of the truncation. A leader that does not feel its follower has no
+ * noise when the follower is disturbed, so that each response has its own e. */
 static enum status find_responses(struct disturbances *all) {
-    const int n = all->problem->n_unknowns;
+    const int n = all->problem->n_unknowns, n_seen = n * all->n_memory, n_values = n * n_seen;
     TRY(follow_disturbance(all, -1, 0, all->base));
     for (int j = 0; j < n; j++) {
-        double size = all->size;
-        for (;; size *= shorter) {
-            enum status status = follow_disturbance(all, j, size, all->above);
-            if (status == STATUS_OK) status = follow_disturbance(all, j, -size, all->below);
+        for (double size = all->size;; size *= shorter) {
+            const enum status status = take_differences(all, j, size);
             if (status == STATUS_OK) break;
             if (status == STATUS_STOPPED || size * shorter < least_disturbance) return status;
         }
-        for (int m = 0; m < all->n_memory; m++) {
-            for (int i = 0; i < n; i++) {
-                const double above = all->above[i + n * m], below = all->below[i + n * m];
-                all->response[i + n * (j + n * m)] = (above - below) / (2 * size);
-                all->error[i + n * (j + n * m)] = fabs(above + below - 2 * all->base[i + n * m]) / (2 * size);
-            }
+    }
+
+    double difference = 0, noise_of_difference = 0;
+    for (int k = 0; k < n_values; k++) {
+        const double apart = all->central[k + n_values] - all->central[k];
+        const double noise = (all->second[k] - 4 * all->second[k + n_values]) / all->sizes[k / n_seen];
+        difference += apart * apart;
+        noise_of_difference += 2.5 * noise * noise / 17.5;
+    }
+    const double part = difference > noise_of_difference ? 1 - noise_of_difference / difference : 0, way = 4 * part / 3;
+
+    for (int j = 0; j < n; j++) {
+        for (int i = 0; i < n_seen; i++) {
+            const int k = i + n_seen * j, to = i % n + n * (j + n * (i / n));
+            const double apart = all->central[k + n_values] - all->central[k];
+            const double noise = (all->second[k] - 4 * all->second[k + n_values]) / all->sizes[j];
+            const double variance = noise * noise / 17.5 * ((1 - way) * (1 - way) / 2 + 2 * way * way);
+            all->response[to] = all->central[k] + way * apart;
+            all->error[to] = hypot(sqrt(variance), (4.0 / 3 - way) * sqrt(part) * apart);
         }
     }
     return STATUS_OK;
@@ -243,6 +280,9 @@ enum status steady_multipliers_find(struct arena *arena, struct steady_problem *
     NEW(scratch, all.start, n);
     NEW(scratch, all.to, n);
     NEW(scratch, all.base, n * all.n_memory);
+    NEW(scratch, all.sizes, n);
+    NEW(scratch, all.central, SIZES * n * n * all.n_memory);
+    NEW(scratch, all.second, SIZES * n * n * all.n_memory);
     NEW(scratch, all.above, n * all.n_memory);
     NEW(scratch, all.below, n * all.n_memory);
     NEW(scratch, all.response, n * n * all.n_memory);

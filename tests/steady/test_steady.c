@@ -205,8 +205,8 @@ TEST(the_state_stays_where_its_multipliers_are_taken) {
     steady_setup_multipliers(&setup);
     assert_memory_equal(simulation->state->y, before, bytes);
     assert_int_equal(simulation->state->wake[0].n_vortex, n_vortex);
-    // seven runs of three beats each: one undisturbed, three with an increment, three with a decrement
-    assert_int_equal(setup.multipliers.n_beats, 21);
+    // thirteen runs of three beats each: one undisturbed, three with increments of two sizes, three with decrements
+    assert_int_equal(setup.multipliers.n_beats, 39);
     assert_int_equal(setup.problem.map.n_beats, 3);
 }
 
