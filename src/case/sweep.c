@@ -262,6 +262,13 @@ static void axis_check_levels(const struct axis *axis, const struct yaml_node *n
         return;
     }
 
+    // orders need the sizes of the levels
+    if (axis->key[0]->type == DURATION && !into->key[0].is_number) {
+        yaml_errors_add(axis->errors, node->mark, "%s.refine: expects values of '%.60s' in s, not in beats", axis->name,
+                        into->key[0].path);
+        return;
+    }
+
     bool are_different = into->n_values >= MIN_LEVELS;
     for (int i = 0; i < into->n_values; i++) {
         for (int j = 0; j < i; j++) {
