@@ -742,7 +742,10 @@ VERDICTS = {-1: ("stable", "-"), 0: ("undecided", ":"), 1: ("unstable", "--")}
 def plot_branch(study, figure, asked=None):
     """The points of `shoal steady --continue` in their order: a quantity of the fish, the places of followers, the largest
     multiplier; the line of a step is that of the less stable of its ends."""
-    from scipy.interpolate import PchipInterpolator
+    try:
+        from scipy.interpolate import PchipInterpolator
+    except ImportError as wrong:
+        raise ImportError("the picture of a branch needs scipy: apt install python3-scipy, or pip install scipy") from wrong
 
     # monotone cubics of the arclength between the points: at a fold the key turns smoothly
     key, arclength = study.axes[0][0], study["arclength"]
