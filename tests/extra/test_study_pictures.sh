@@ -100,4 +100,27 @@ check a_picture_of_another_case_beside draws compared/study.nc
 run error swimmer.yaml --of speed -o sensitivities --sensitivity=modulus,length
 check a_picture_of_sensitivities draws sensitivities/study.nc
 
+# ---- a branch of steady states
+
+cat >plate.yaml <<'end'
+format: 1
+time: {end: 5, shedding_interval: 0.05}
+fluid: {density: 1, viscosity: 2e-3}
+wake: {lifetime: 3, smoothing: 0.2}
+steady: {tolerance: 1e-3}
+fish:
+  - name: plate
+    nodes: 4
+    sheet_points: 13
+    force: pressure
+    pressure: {span: infinite, suction_limit: 0}
+    drag: {skin: laminar}
+    start: {speed: 3.8}
+    wave: {amplitude: 0, frequency: 0}
+    body: {profile: uniform, thickness: 0.05, depth: 1, density: 20, modulus: 1e6}
+    motion: {prescribed: all, surge: free, heave: 0.15, frequency: 1}
+end
+run steady plate.yaml --continue 'fish[*].motion.heave=0.15:0.14' -o branch
+check_with "import scipy" a_picture_of_a_branch draws branch/study.nc
+
 finish
