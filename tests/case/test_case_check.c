@@ -180,7 +180,8 @@ TEST(times_that_do_not_fit_the_default_are_rounded_and_noted) {
     NEAR(values.time.checkpoint_interval, 50 * 0.007, 0, 1e-14);
     NEAR(values.output.wake_interval, 5 * 14 * 0.007, 0, 1e-14);
     assert_non_null(strstr(values.notes, "time.end: 2 s is not an integer multiple"));
-    assert_non_null(strstr(values.notes, "rounded to 2.002 s; the default of time.shedding_interval is 1/100 of the"));
+    assert_non_null(
+        strstr(values.notes, "rounded to 2.002 s; time.shedding_interval is 1/100 of the fastest beat by default"));
     assert_non_null(strstr(values.notes, "rounded to 0.098 s"));
     assert_non_null(
         strstr(values.notes, "output.wake_interval: 0.5 s is not an integer multiple of time.output_interval"));
