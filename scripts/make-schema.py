@@ -67,7 +67,8 @@ def form(key):
     return {
         "number": one,
         "integer": one,
-        "time": {"anyOf": [one, {**STRING, "pattern": "^[0-9.eE+-]+(/[0-9.eE+-]+)? beats?$"}]},
+        # bounds concern numbers and patterns strings: an editor then names the bound
+        "time": {**one, "type": [one["type"], "string"], "pattern": "^[0-9.eE+-]+(/[0-9.eE+-]+)? beats?$"},
         "[x, y]": {**pair, "items": one},
         "list of numbers": {**LIST, "items": one},
         "list of [x, y]": {**LIST, "items": {**pair, "items": one}},
