@@ -17,6 +17,7 @@
 #include "result/durable.h"
 #include "result/result_row.h"
 #include "result/target.h"
+#include "run/simulate.h"
 #include "solver/newton.h"
 #include "study/convergence.h"
 #include "study/member_file.h"
@@ -47,7 +48,6 @@ static const char fold[] = "fold"; /* a label */
 
 struct point {
     double *x;                 /* (n + 1) */
-    double *tangent;           /* unit vector                                                (n + 1) */
     double arclength;          /* sum of the distances between the points up to here */
     double size, error, angle; /* largest multiplier: absolute value, its error; angle in a beat, rad */
     const char *label;         /* "": ordinary */
@@ -126,9 +126,8 @@ static enum status evaluate(struct branch *branch, const double *x, double *chan
     TRY(status);
     branch->n_evaluations++;
 
-    double square = 0;
-    for (int j = 0; j <= n; j++) square += (x[j] - branch->last[j]) * (x[j] - branch->last[j]);
-    for (int i = 0; i < n && branch->has_last && square > telling * telling; i++) {
+    const double way = distance(n + 1, x, branch->last), square = way * way;
+    for (int i = 0; i < n && branch->has_last && way > telling; i++) {
         double missing = change[i] - branch->last_change[i];
         for (int j = 0; j <= n; j++) missing -= branch->matrix[i + j * n] * (x[j] - branch->last[j]);
         for (int j = 0; j <= n; j++) branch->matrix[i + j * n] += missing / square * (x[j] - branch->last[j]);
@@ -489,6 +488,9 @@ static enum status fail_with_branch(const struct branch *branch, enum status sta
     char reason[2048];
     snprintf(reason, sizeof reason, "%s", status_message());
     if (branch->n_points == 0) return status_fail(status, "%s", reason);
+    if (status == STATUS_STOPPED) {
+        snprintf(reason, sizeof reason, "stopped %s", simulate_stopped_by(branch->options->stop));
+    }
     const struct point *const last = branch->point[branch->n_points - 1];
     const int n = branch->n_points;
     return status_fail(
@@ -541,17 +543,10 @@ static void print_json(const struct branch *branch, FILE *stream) {
 
 // ---- the folder
 
-/* Make the folder, and remove the files of an earlier branch. */
-static enum status prepare_folder(const struct branch *branch) {
-    const struct branch_options *const options = branch->options;
-    const char *const study = study_folder_path(branch->arena, options->folder, "study.nc");
-    if (access(study, F_OK) == 0 && !options->force) {
-        return status_fail(STATUS_FILE, "%s exists: replace the branch with --force, or choose another folder with -o",
-                           study);
-    }
-    TRY(study_folder_create(options->folder));
+/* Remove the files of an earlier branch. study: path of its study.nc */
+static void remove_earlier(const struct branch *branch, const char *study) {
     glob_t found;
-    const char *const pattern = study_folder_path(branch->arena, options->folder, "state-[0-9][0-9][0-9].nc");
+    const char *const pattern = study_folder_path(branch->arena, branch->options->folder, "state-[0-9][0-9][0-9].nc");
     if (glob(pattern, GLOB_NOSORT, NULL, &found) == 0) {
         for (size_t i = 0; i < found.gl_pathc; i++) {
             if (target_is(found.gl_pathv[i], TARGET_NETCDF)) unlink(found.gl_pathv[i]);
@@ -559,7 +554,6 @@ static enum status prepare_folder(const struct branch *branch) {
         globfree(&found);
     }
     if (target_is(study, TARGET_NETCDF)) unlink(study);
-    return STATUS_OK;
 }
 
 enum status branch_follow(const struct branch_options *options, FILE *stream) {
@@ -594,9 +588,16 @@ enum status branch_follow(const struct branch_options *options, FILE *stream) {
     }
     TRY(status);
 
-    TRY(prepare_folder(branch));
+    // another call may be writing its branch into this folder
+    const char *const study = study_folder_path(arena, options->folder, "study.nc");
     struct durable_claim claim;
-    TRY(durable_claim_take(&claim, study_folder_path(arena, options->folder, "study.nc")));
+    if (access(study, F_OK) == 0 && !options->force) {
+        return status_fail(STATUS_FILE, "%s exists: replace the branch with --force, or choose another folder with -o",
+                           study);
+    }
+    TRY(study_folder_create(options->folder));
+    TRY(durable_claim_take(&claim, study));
+    remove_earlier(branch, study);
     status = follow(branch);
     if (status == STATUS_OK) status = locate_all(branch);
     if (status != STATUS_OK) {
