@@ -16,6 +16,7 @@
 #include "run/simulate.h"
 #include "school/warnings.h"
 #include "steady/steady.h"
+#include "study/study_folder.h"
 
 /* The CPU time of the command, and the part of it that is for estimates [s]; the rest is for simulate_start. */
 static const double time_limit = 0.4, patience = 0.25;
@@ -29,8 +30,7 @@ struct checked {
     int n_checked;          /* members whose cases have been checked, a sample of a long sweep */
     int n_fish, n_unknowns; /* of the last school; n_unknowns 0: no school yet */
     int n_estimated, n_failed, n_warned[N_WARNINGS], first_warned[N_WARNINGS], first_failed;
-    int n_refused, first_refused; /* members that can have no steady state */
-    double seconds, bytes;        /* sum and maximum over the estimated members */
+    double seconds, bytes; /* sum and maximum over the estimated members */
     char failure[512], warning[N_WARNINGS][WARNING_BYTES];
 };
 
@@ -69,6 +69,17 @@ static enum status check_start(struct checked *checked, int member, const struct
         checked->first_failed = member;
         snprintf(checked->failure, sizeof checked->failure, "%s", status_message());
     }
+    return STATUS_OK;
+}
+
+/* Check the case of a member and, unless the time is over, its start. */
+static enum status check_member(struct checked *checked, struct study_refusals *refusals, int member, bool starts) {
+    struct case_values values;
+    enum status status = case_member(&values, checked->values, member);
+    if (status == STATUS_OK && sweep_is_steady(checked->values)) status = steady_refuse(&values);
+    if (status == STATUS_OK && starts) status = check_start(checked, member, &values);
+    TRY(study_refusals_add(refusals, checked->values, member, status));
+    case_free(&values);
     return STATUS_OK;
 }
 
@@ -136,37 +147,21 @@ enum status main_check(const struct request *request) {
     int step = (int)fmax(1, round(0.618 * n));
     while (common_divisor(n, step) > 1) step++;
     checked.n_checked = !checked.is_study;
-    for (int m = 0; checked.is_study && checked.n_checked < n; m = (m + step) % n) {
+    struct study_refusals refusals = {0};
+    int m = 0;
+    for (; checked.is_study && checked.n_checked < n; m = (m + step) % n) {
         if (checked.n_checked > 0 && *main_stop_signal()) break;
         checked.n_checked++;
-        struct case_values member;
-        TRY(case_member(&member, &values, m));
-        const enum status status = check_start(&checked, m, &member);
-        case_free(&member);
-        TRY(status);
+        TRY(check_member(&checked, &refusals, m, true));
     }
 
-    // the members of a search for steady states: all of a short sweep, as many of a long one as the time permits
+    // the cases of the other members: all of a short sweep, as many of a long one as the time permits
     const double begun = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
-    int n_examined = 0;
-    for (int m = 0; checked.is_study && sweep_is_steady(&values) && n_examined < n; m = (m + step) % n) {
-        if (n_examined > 0 && clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - begun > time_limit) break;
-        n_examined++;
-        struct case_values member;
-        TRY(case_member(&member, &values, m));
-        const enum status status = steady_refuse(&member);
-        case_free(&member);
-        if (status == STATUS_OK) continue;
-        if (status != STATUS_CASE) return status;
-        if (checked.n_refused++ > 0 && m > checked.first_refused) continue;
-        checked.first_refused = m;
-        snprintf(checked.failure, sizeof checked.failure, "%s", status_message());
+    for (; checked.is_study && refusals.n_checked < n; m = (m + step) % n) {
+        if (clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - begun > time_limit) break;
+        TRY(check_member(&checked, &refusals, m, false));
     }
-    if (checked.n_refused > 0) {
-        return status_fail(STATUS_CASE, "%s: %d of %d members cannot have a steady state; member %d (%s): %s",
-                           request->positional, checked.n_refused, n_examined, checked.first_refused,
-                           sweep_member_text(request->arena, &values, checked.first_refused), checked.failure);
-    }
+    TRY(study_refusals_status(&refusals, &values));
 
     // an existing output file is no error of the case: only note
     if (!checked.is_study && !request->quiet && target_check(path, TARGET_NETCDF, false) != STATUS_OK) {

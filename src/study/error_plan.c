@@ -728,12 +728,14 @@ static enum status create_points(struct error_sweep *sweep, char ***swept, const
         for (int k = 0; k < from[a].n_keys; k++) axis->key[axis->n_keys++] = from[a].key[k];
     }
 
+    struct study_refusals refusals = {0};
     struct study_watch watch = {.options = options, .what = "read", .n = sweep->n_points};
     for (int p = 0; p < sweep->n_points; p++) {
         struct error_study *const point = &sweep->point[p];
-        struct case_values *values;
+        struct case_values *values = NULL;
         TRY(study_folder_watch(&watch, p + 1));
-        TRY(study_folder_case(arena, &values, study, p));
+        TRY(study_refusals_add(&refusals, study, p, study_folder_case(arena, &values, study, p)));
+        if (!values) continue;
         *point = (struct error_study){
             .sweep = sweep, .study = study, .values = values, .is_full = true, .n_fish = values->school.n_fish};
         char **value = *swept + p * sweep->n_swept;
@@ -743,6 +745,7 @@ static enum status create_points(struct error_sweep *sweep, char ***swept, const
             for (int k = 0; k < from[a].n_keys; k++) *value++ = from[a].value[i * from[a].n_keys + k];
         }
     }
+    TRY(study_refusals_status(&refusals, study));
 
     TRY(choose_twins(sweep, n_axes, from));
 

@@ -41,7 +41,7 @@ struct study_options {
 };
 
 /* Run all unfinished members. *n_failed: number of failed members; the folder contains the reasons. Fails with
- * STATUS_CASE (a member is not a valid case; no member has run), STATUS_FILE (the folder contains another study, or a
+ * STATUS_CASE (members that cannot run; no member has run), STATUS_FILE (the folder contains another study, or a
  * process cannot be started), STATUS_SOLVER (a required member has failed), STATUS_STOPPED or STATUS_MEMORY. */
 enum status study_run(const struct case_values *values, const struct study_options *options, int *n_failed);
 

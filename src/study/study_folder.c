@@ -18,6 +18,7 @@
 #include "result/netcdf.h"
 #include "result/target.h"
 #include "run/simulate.h"
+#include "steady/steady.h"
 
 enum status study_folder_create(const char *folder) {
     struct stat facts;
@@ -64,6 +65,28 @@ enum status study_folder_case(struct arena *arena, struct case_values **values, 
     arena_move(one->arena, arena);
     *values = one;
     return STATUS_OK;
+}
+
+enum status study_refusals_add(struct study_refusals *refusals, const struct case_values *study, int member,
+                               enum status status) {
+    if (status != STATUS_OK && status != STATUS_CASE) return status;
+    refusals->n_checked++;
+    if (status == STATUS_OK || (refusals->n++ > 0 && member > refusals->first)) return STATUS_OK;
+    refusals->first = member;
+
+    // a case that is not valid names the member in its message
+    ARENA(scratch, NULL, "the text of a member");
+    const char *const message = status_message();
+    const char *const name = arena_text(scratch, "member %d (%s):", member, sweep_member_text(scratch, study, member));
+    const bool is_named = strncmp(message, name, strlen(name)) == 0;
+    snprintf(refusals->reason, sizeof refusals->reason, "%s%s%s", is_named ? "" : name, is_named ? "" : " ", message);
+    return STATUS_OK;
+}
+
+enum status study_refusals_status(const struct study_refusals *refusals, const struct case_values *study) {
+    if (refusals->n == 0) return STATUS_OK;
+    return status_fail(STATUS_CASE, "%s: %d of %d members cannot run; %s", study->name, refusals->n,
+                       refusals->n_checked, refusals->reason);
 }
 
 void study_folder_set_reason(struct arena *arena, const char *folder, int member, const char *reason) {
@@ -168,12 +191,13 @@ enum status study_folder_watch(struct study_watch *watch, int n_checked) {
 }
 
 /* Check the case and an existing result of a member; list the member unless finished. arena: scratch */
-static enum status plan_member(struct arena *arena, struct study_plan *plan, const struct case_values *study,
-                               const char *folder, int number, bool force) {
+static enum status plan_member(struct arena *arena, struct study_plan *plan, struct study_refusals *refusals,
+                               const struct case_values *study, const char *folder, int number, bool force) {
     struct case_values *values;
     struct member_file member = {.status = ""};
     bool is_finished = false;
-    TRY(study_folder_case(arena, &values, study, number));
+    const enum status status = study_folder_case(arena, &values, study, number);
+    if (status != STATUS_OK) return study_refusals_add(refusals, study, number, status);
     const char *const path = study_folder_member(arena, folder, number, ".nc");
     const bool exists = access(path, F_OK) == 0;
     if (exists) TRY(target_check(path, TARGET_NETCDF, true));
@@ -199,6 +223,8 @@ static enum status plan_member(struct arena *arena, struct study_plan *plan, con
     }
 
     plan->n_done += is_finished;
+    const bool is_searched = !is_finished && sweep_is_steady(study);
+    TRY(study_refusals_add(refusals, study, number, is_searched ? steady_refuse(values) : STATUS_OK));
     if (is_finished) return STATUS_OK;
     plan->member[plan->n++] = number;
     if (values->school.threads > plan->max_threads) plan->max_threads = values->school.threads;
@@ -248,13 +274,15 @@ enum status study_plan_create(struct arena *arena, struct study_plan *plan, cons
 
     plan->n_members = last - first + 1;
     NEW(arena, plan->member, plan->n_members);
+    struct study_refusals refusals = {0};
     struct study_watch watch = {.options = options, .what = "checked", .n = plan->n_members};
     for (int number = first; number <= last; number++) {
         struct arena *const scratch = arena_create(arena, "the plan of a study");
-        TRY(plan_member(scratch, plan, study, folder, number, force));
+        TRY(plan_member(scratch, plan, &refusals, study, folder, number, force));
         arena_free(scratch);
         TRY(study_folder_watch(&watch, number - first + 1));
     }
+    TRY(study_refusals_status(&refusals, study));
 
     if (is_part) return STATUS_OK;
     struct arena *const scratch = arena_create(arena, "the plan of a study");

@@ -32,6 +32,20 @@ enum status study_folder_parse(struct arena *arena, struct case_values **study, 
 enum status study_folder_case(struct arena *arena, struct case_values **values, const struct case_values *study,
                               int member);
 
+/* Members that cannot run: the case is not valid, or the search is for a steady state and the case can have none. */
+struct study_refusals {
+    int n, n_checked, first; /* members that cannot run, of those that were checked; the first of them */
+    char reason[4096];       /* of the first */
+};
+
+/* Count a checked member. status is the result of its check, of which STATUS_CASE means that it cannot run; any other
+ * failure is returned. */
+enum status study_refusals_add(struct study_refusals *refusals, const struct case_values *study, int member,
+                               enum status status);
+
+/* Fail with STATUS_CASE, with the number of the members that cannot run and the reason of the first, unless all can. */
+enum status study_refusals_status(const struct study_refusals *refusals, const struct case_values *study);
+
 /* Write the reason of a failure to the .failed file of a member; NULL: remove the file of an earlier run. A second line
  * becomes the progress of the member. */
 void study_folder_set_reason(struct arena *arena, const char *folder, int member, const char *reason);
@@ -67,7 +81,7 @@ enum status study_folder_watch(struct study_watch *watch, int n_checked);
 
 /* Check all members, or a part of them (options->is_part), and list the unfinished members. options->force:
  * accept results of another study in the folder, and remove such results beyond the last member. Other fields in use:
- * folder, progress, stop. Fails with STATUS_CASE (no such members, or a member is not a valid case), STATUS_FILE (the
+ * folder, progress, stop. Fails with STATUS_CASE (no such members, or members that cannot run), STATUS_FILE (the
  * folder contains results of another study) or STATUS_STOPPED. */
 enum status study_plan_create(struct arena *arena, struct study_plan *plan, const struct case_values *study,
                               const struct study_options *options);

@@ -22,9 +22,30 @@ sweep: [{key: "fish[*].wave.frequency", values: [1, 1.1, 2, 1.3], steady: true}]
 end
 run check beats.yaml
 check members_without_a_steady_state_are_found_before_a_run eval 'test "$code" = 2 &&
-    has err "beats.yaml: 2 of 4 members cannot have a steady state; member 1 (fish[*].wave.frequency=1.1): a beat of 0.9090909091 s has 18.1818 events"'
+    has err "beats: 2 of 4 members cannot run; member 1 (fish[*].wave.frequency=1.1): a beat of 0.9090909091 s has 18.1818 events"'
+run study beats.yaml
+check a_study_of_them_starts_none eval 'test "$code" = 2 -a ! -e beats-study && has err "beats: 2 of 4 members cannot run"'
 run check beats.yaml --set 'sweep=[{key: "fish[*].wave.frequency", values: [1, 2], steady: true}]'
 check all_others_can_run test "$code" = 0
+
+# ---- members whose times do not fit are counted, and the first of them is named
+
+cat >times.yaml <<'end'
+format: 1
+time: {end: 2, shedding_interval: 0.02}
+fish: [{force: reactive, nodes: 9}]
+sweep:
+  - {key: time.shedding_interval, values: [0.02, 0.04, 0.05]}
+  - {key: time.end, values: [2, 1.1, 1.06, 1.02]}
+end
+for command in check study "error --of speed"; do
+    # shellcheck disable=SC2086
+    run $command times.yaml
+    check "members_with_wrong_times_are_counted_by_${command%% *}" eval 'test "$code" = 2 &&
+        has err "times: 5 of 12 members cannot run; member 5 (time.shedding_interval=0.04, time.end=1.1):" &&
+        has err "error: time.end: 1.1 s is not an integer multiple of time.shedding_interval, 0.04 s" &&
+        ! has err "member 6"'
+done
 
 # ---- a study from begin to end
 
