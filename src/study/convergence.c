@@ -595,6 +595,20 @@ static int find_worst(const struct error_study *study) {
     return worst;
 }
 
+/* The error of the differences from which a multiplier follows, which is no part of any key; of a ratio or a change,
+ * that of both multipliers. */
+static double error_of_differences(const struct error_study *study, const struct member_file *members) {
+    static const char multiplier[] = "steady_multiplier", error[] = "steady_multiplier_error";
+    const struct member_file *const own = &members[study->stated];
+    if (study->relation == ERROR_VALUE) return member_file_number(own, error, 0);
+    const struct member_file *const other = &members[twin_of(study, study->stated)];
+    const double part = study->relation == ERROR_CHANGE
+                            ? 1
+                            : member_file_number(own, multiplier, 0) / member_file_number(other, multiplier, 0);
+    const double sum = member_file_number(own, error, 0) + fabs(part) * member_file_number(other, error, 0);
+    return study->relation == ERROR_CHANGE ? sum : sum / member_file_number(other, multiplier, 0);
+}
+
 void convergence_study_judge(struct error_study *study, const struct member_file *members) {
     for (int k = 0; k < study->n_keys; k++) {
         struct error_study_key *const key = &study->key[k];
@@ -623,10 +637,8 @@ void convergence_study_judge(struct error_study *study, const struct member_file
             study->parts[place] = sum;
             study->error[place] = fmin(sum, fabs(shift) + spread) + study->together[place];
             if (isnan(sum) || study->study->error->sensitivity) study->error[place] = NAN;
-            // the error of the differences is no part of any key
-            const bool is_multiplier = strcmp(member_file_quantity(study->quantity[q])->name, "steady_multiplier") == 0;
-            if (is_multiplier && study->relation == ERROR_VALUE) {
-                study->error[place] += member_file_number(&members[study->stated], "steady_multiplier_error", 0);
+            if (strcmp(member_file_quantity(study->quantity[q])->name, "steady_multiplier") == 0) {
+                study->error[place] += error_of_differences(study, members);
             }
 
             // uncertain inputs are independent of each other and of the numerical errors

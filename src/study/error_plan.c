@@ -626,6 +626,12 @@ static enum status choose_quantities(struct error_study *study) {
             return status_fail(STATUS_CASE, "error.of: %s is of a run and %s of a steady state: ask for one kind",
                                error->of[study->is_steady ? i : 0], error->of[study->is_steady ? 0 : i]);
         }
+        if (error->against_kind == AGAINST_FISH && !quantity->of_fish) {
+            return status_fail(STATUS_CASE,
+                               "error.against: %s is of the whole case, so %s compares it with itself: compare it with "
+                               "another case",
+                               error->of[i], error->against);
+        }
         if (i == ERROR_STUDY_QUANTITIES) {
             return status_fail(STATUS_CASE, "error.of: more than %d quantities", ERROR_STUDY_QUANTITIES);
         }

@@ -823,6 +823,27 @@ TEST(errors_that_both_cases_share_cancel_in_their_ratio) {
     ABOVE(point->error[0], 0);
 }
 
+/* Multipliers of .6 +- .01 and .5 +- .02 that no key changes. */
+TEST(a_comparison_of_multipliers_has_the_errors_of_both) {
+    const struct error_study first =
+        open_study(UNIFORM "sweep: [{key: \"fish[*].body.modulus\", values: [1e7, 3e7]}]\n",
+                   "{of: steady_multiplier, keys: [nodes], against: first}");
+    const struct error_sweep *const sweep = first.sweep;
+    struct member_file *const members = make_members(&first);
+    for (int m = 0; m < sweep_n_members(first.study); m++) {
+        const bool is_first = setting(&first, m, "fish.body.modulus") < 2e7;
+        set_value(&members[m], "steady_multiplier", is_first ? 0.5 : 0.6);
+        set_value(&members[m], "steady_multiplier_error", is_first ? 0.02 : 0.01);
+    }
+    convergence_sweep_judge(first.sweep, members);
+    NEAR(sweep->point[1].error[0], 0.01, 0, 1e-12);
+    NEAR(sweep->ratio->point[1].value[0], 1.2, 0, 1e-12);
+    NEAR(sweep->ratio->point[1].error[0], 1.2 * (0.01 / 0.6 + 0.02 / 0.5), 0, 1e-12);
+    NEAR(sweep->change->point[1].error[0], 0.03, 0, 1e-12);
+    // of a point with itself, where the change is 0
+    NEAR(sweep->change->point[0].error[0], 0.04, 0, 1e-12);
+}
+
 TEST(a_point_of_a_sweep_or_another_fish_is_a_twin) {
     const struct error_study first = open_study(
         UNIFORM
@@ -875,6 +896,16 @@ TEST(what_cannot_be_compared_is_refused) {
         assert_int_equal(status, STATUS_CASE);
         if (!strstr(status_message(), examples[i].message)) fail_msg("%s: %s", examples[i].error, status_message());
     }
+}
+
+TEST(a_quantity_of_the_whole_case_is_not_compared_with_itself) {
+    static const char text[] =
+        "format: 1\ntime: {end: 1}\nfish: [{name: one}, {name: other, start: {position: [9, 0]}}]\n"
+        "error: {of: steady_multiplier, against: one=other}\n";
+    struct error_sweep *sweep;
+    const struct case_values values = parse(text);
+    assert_int_equal(error_plan_create(test_arena(), &sweep, &values, NULL), STATUS_CASE);
+    contains(status_message(), "error.against: steady_multiplier is of the whole case");
 }
 
 TEST(other_models_bound_the_value) {
