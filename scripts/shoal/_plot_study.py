@@ -755,15 +755,21 @@ def plot_branch(study, figure, asked=None):
         at = np.linspace(*arclength[i:i + 2], 20)
         return PchipInterpolator(arclength, values)(at) if np.isfinite(values).all() else np.full(at.shape, np.nan)
 
-    size, error = study["steady_multiplier"], study["steady_multiplier_error"]
-    verdict = np.where(np.abs(size - 1) <= error, 0, np.sign(size - 1)).astype(int)
-    rows = [(asked or "steady_speed", study[asked or "steady_speed"])]
+    # an equilibrium has a growth rate instead of a multiplier
+    has_beat = np.isfinite(study["steady_multiplier"]).any()
+    size = study["steady_multiplier"] if has_beat else study["steady_growth"]
+    error = study["steady_multiplier_error"] if has_beat else np.zeros(x.size)
+    limit = 1 if has_beat else 0
+    verdict = np.where(np.abs(size - limit) <= error, 0, np.sign(size - limit)).astype(int)
+    quantity = asked or ("steady_speed" if has_beat else "steady_deflection")
+    rows = [(quantity, study[quantity])] if quantity not in STABILITY and np.isfinite(study[quantity]).any() else []
     if not asked and len(names) > 1 and np.isfinite(study["steady_place"][:, 1:]).all():
         behind = -study["steady_place"][:, :, 0]
         behind[:, 0] = np.nan
         rows.append(("distance behind [m]", behind))
     figure.set_figheight(1.4 + 1.3 * (len(rows) + 1))
-    *stack, last = figure.subplots(len(rows) + 1, 1, sharex=True)
+    *stack, last = np.atleast_1d(figure.subplots(len(rows) + 1, 1, sharex=True))
+    top = [*stack, last][0]
     for axes, (quantity, values) in zip(stack, rows):
         is_place = quantity.startswith("distance")
         for f, name in enumerate(names):
@@ -777,8 +783,8 @@ def plot_branch(study, figure, asked=None):
     last.errorbar(x, size, error, color="black", ls="", marker="o", ms=3, capsize=2, elinewidth=0.8)
     for i in range(x.size - 1):
         last.plot(between(x, i), between(size, i), color="black", lw=0.8)
-    last.axhline(1, color="#888888", lw=0.8)
-    last.set_ylabel("largest\nmultiplier")
+    last.axhline(limit, color="#888888", lw=0.8)
+    last.set_ylabel("largest\nmultiplier" if has_beat else "growth\n[s$^{-1}$]")
     for axes in (*stack, last):
         axes.grid(lw=0.3, color=GRID)
     last.set_xlabel(study.label(key.name))
@@ -792,10 +798,10 @@ def plot_branch(study, figure, asked=None):
             axes.plot(np.full(len(names), x[i]), values[i], ls="", marker=marks[label], ms=6, mfc="gold", mec="black", zorder=4)
         last.plot(x[i], size[i], ls="", marker=marks[label], ms=6, mfc="gold", mec="black", zorder=4)
     for value in sorted(set(verdict)):
-        stack[0].plot([], [], ls=VERDICTS[value][1], color="#444444", lw=1.3, label=VERDICTS[value][0])
+        top.plot([], [], ls=VERDICTS[value][1], color="#444444", lw=1.3, label=VERDICTS[value][0])
     for label, mark in marks.items():
-        stack[0].plot([], [], ls="", marker=mark, ms=6, mfc="gold", mec="black", label=label)
-    legend_above(stack[0], 3)
+        top.plot([], [], ls="", marker=mark, ms=6, mfc="gold", mec="black", label=label)
+    legend_above(top, 3)
 
 
 def plot_comparison(study, figure):

@@ -250,9 +250,9 @@ class Threshold(NamedTuple):
     by_secant: float  #: length of the last secant
     slope: float  #: of the modulus of the largest multiplier over the key, without a beat of the growth rate, s-1
     unstable: str  #: "above" or "below"
-    kind: str  #: "real", "period doubling", "Neimark-Sacker"; without a beat "divergence", "flutter"
+    kind: str  #: "fold", "multiplier +1", "period doubling", "Neimark-Sacker"; without a beat "divergence", "flutter"
     period: float  #: of the oscillation that grows, beats, without a beat s; 0: none
-    points: list  #: of the search: a dict of value, multiplier (or growth), error and period each; None: no steady state
+    points: list  #: of the branch: a dict of value, multiplier (or growth), error, period, label and file each
     path: str  #: of study.nc
 
     def __float__(self):
@@ -267,9 +267,8 @@ def threshold(case, key: str, first: float, last: float, assignments=None, path=
     """Find the value of a key at which the steady state becomes unstable, on the way from first to last, by
     `shoal steady --threshold`.
 
-    path: of the folder of the search (None: the name of the case with -threshold). overwrite: replace another search; else
-    states that are complete are kept. start: the result of a steady state to start from. Without a threshold there is a
-    SolverError, whose message has the multipliers found so far.
+    path: of the folder (None: the name of the case with -threshold). overwrite: replace another threshold. start: the result
+    of a steady state to start from. Without a threshold there is a SolverError, whose message says how far the branch came.
     """
     way = f"{os.fsdecode(text_of(key, 'key'))}={number_of(first, 'first')!r}:{number_of(last, 'last')!r}"
     arguments = ["--json", "--threshold", way] + ([] if _shows(progress) else ["-q"]) + (["--force"] if overwrite else [])

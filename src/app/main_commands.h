@@ -2,7 +2,7 @@
  * progress to stderr, and can fail with any status. Tested by tests/app/test_command.sh and tests/study.
  *
  *     main_run.c      run, resume, demo, steady
- *     main_branch.c   steady --threshold
+ *     main_branch.c   steady --threshold and --continue
  *     main_study.c    study, error, gather, compare
  *     main_check.c    check
  *     main_case.c     show, new, keys, info
@@ -20,8 +20,7 @@ enum status main_run(const struct request *request);
 enum status main_resume(const struct request *request);
 enum status main_demo(const struct request *request);
 enum status main_steady(const struct request *request);
-enum status main_threshold(const struct request *request);
-enum status main_continue(const struct request *request);
+enum status main_branch(const struct request *request);
 enum status main_study(const struct request *request);
 enum status main_error(const struct request *request);
 enum status main_gather(const struct request *request);

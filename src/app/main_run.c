@@ -175,8 +175,7 @@ enum status main_demo(const struct request *request) {
 // ---- steady
 
 enum status main_steady(const struct request *request) {
-    if (request->threshold) return main_threshold(request);
-    if (request->follow) return main_continue(request);
+    if (request->threshold || request->follow) return main_branch(request);
     struct case_values values;
     const char *path;
     TRY(read_one_case(request, &values, &path));

@@ -208,14 +208,24 @@ static enum status hold(struct run *run) {
     return steady_search_hold(&run->problem, point->value, change);
 }
 
-static void tell_point(const struct run *run, bool has_multipliers) {
+static void tell_point(const struct run *run, bool has_beat) {
+    const struct steady_values *const found = &run->found;
     struct steady_point *const point = run->options->found;
-    point->n = run->problem.n_unknowns;
+    if (!point) return;
+    const bool has_multipliers = found->n_multipliers > 0;
+    point->n = has_beat ? run->problem.n_unknowns : 0;
+    point->has_beat = has_beat;
     NEW(point->arena, point->value, point->n);
-    steady_problem_read(&run->problem, point->value);
-    point->real = has_multipliers ? run->found.real[0] : NAN;
-    point->imaginary = has_multipliers ? run->found.imaginary[0] : NAN;
-    point->error = has_multipliers ? run->found.multiplier_error[0] : NAN;
+    if (has_beat) {
+        steady_problem_read(&run->problem, point->value);
+        point->real = has_multipliers ? found->real[0] : NAN;
+        point->imaginary = has_multipliers ? found->imaginary[0] : NAN;
+        point->error = has_multipliers ? found->multiplier_error[0] : NAN;
+    } else {
+        point->real = found->growth;
+        point->imaginary = 2 * M_PI * found->growth_frequency;
+        point->error = 0;
+    }
 }
 
 static enum status steady_find(struct run *run, bool is_static) {
@@ -225,6 +235,7 @@ static enum status steady_find(struct run *run, bool is_static) {
     if (is_static) {
         TRY(steady_static_find(run->simulation, run->options->from, &run->found));
         if (run->values->steady.multipliers != NO) TRY(steady_modes_find(run->simulation, &run->found));
+        tell_point(run, false);
         return write_if_due(run);
     }
 
@@ -245,7 +256,7 @@ static enum status steady_find(struct run *run, bool is_static) {
     }
     steady_modes_of_multipliers(&run->found, run->problem.map.period);
     run->found.n_beats = run->problem.map.n_beats;
-    if (run->options->found) tell_point(run, has_multipliers);
+    tell_point(run, true);
     return write_beats(run);
 }
 
@@ -293,8 +304,7 @@ static enum status find_and_write(struct run *run) {
     // start from the initial values of the case, or from another steady state
     struct case_values values = *run->values;
     if (options->from) {
-        TRY(steady_start_read(run->arena, options->from, options->before, options->ratio, &run->values->school,
-                              &values.school.fish));
+        TRY(steady_start_read(run->arena, options->from, &run->values->school, &values.school.fish));
     }
     const enum status started = simulate_start(run->arena, &run->simulation, &values, options->stop);
     if (started == STATUS_STOPPED) {

@@ -22,19 +22,20 @@ struct steady_progress {
 struct trace;
 
 /* A steady state as a point: the slow quantities of the case over their scales (steady_map.h), at the end of a beat,
- * and the largest multiplier. */
+ * and its stability. An equilibrium has no slow quantities. */
 struct steady_point {
     struct arena *arena; /* set by the caller: of value */
     int n;
-    double *value;                 /* (n) */
-    double real, imaginary, error; /* the error is that of the absolute value; NaN: no multipliers */
+    double *value; /* (n) */
+    bool has_beat;
+    /* the largest multiplier, and the error of its absolute value; of an equilibrium the rate and the angular frequency
+     * of the mode that grows most, s-1, whose error is 0. NaN: unknown */
+    double real, imaginary, error;
 };
 
 struct steady_options {
     const char *path;      /* of the result file */
     const char *from;      /* steady result that supplies the initial speeds and positions; NULL: values of the case */
-    const char *before;    /* extrapolate the start from this state through from; NULL: start from from */
-    double ratio;          /* distance of this case from from, over the distance of from from before */
     int overwrite;         /* replace an existing result */
     bool judges_stability; /* the caller asks for the stability: no warning if the state is unstable */
     const struct steady_point *hold; /* hold these slow quantities until the wake has settled, instead of a search, and

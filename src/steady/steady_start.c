@@ -43,9 +43,8 @@ static enum status start_open(struct arena *arena, struct reading **opened, cons
     return read_nose(reading, 0, reading->nose);
 }
 
-// steady_start_read with one file
-static enum status start_read_one(struct arena *arena, const char *path, const struct school_parameters *school,
-                                  struct fish_parameters **fish) {
+enum status steady_start_read(struct arena *arena, const char *path, const struct school_parameters *school,
+                              struct fish_parameters **fish) {
     struct arena *const scratch = arena_create(arena, path);
     struct reading *reading;
     struct fish_parameters *copy;
@@ -75,28 +74,6 @@ static enum status start_read_one(struct arena *arena, const char *path, const s
     }
     arena_free(scratch);
     *fish = copy;
-    return STATUS_OK;
-}
-
-enum status steady_start_read(struct arena *arena, const char *path, const char *before, double ratio,
-                              const struct school_parameters *school, struct fish_parameters **fish) {
-    struct fish_parameters *earlier;
-    TRY(start_read_one(arena, path, school, fish));
-    if (!before) return STATUS_OK;
-    const enum status status = start_read_one(arena, before, school, &earlier);
-    if (status != STATUS_OK) *fish = NULL;
-    TRY(status);
-
-    // what the files do not determine is equal in both copies
-    for (int f = 0; f < school->n_fish; f++) {
-        struct fish_parameters *const now = &(*fish)[f];
-        const struct fish_parameters *const then = &earlier[f];
-        now->start_speed += ratio * (now->start_speed - then->start_speed);
-        now->motion.speed += ratio * (now->motion.speed - then->motion.speed);
-        for (int d = 0; d < 2; d++) {
-            now->start_position[d] += ratio * (now->start_position[d] - then->start_position[d]);
-        }
-    }
     return STATUS_OK;
 }
 

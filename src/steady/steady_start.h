@@ -7,13 +7,12 @@
 #include "base/status.h"
 #include "fish/fish.h"
 
-/* Copy the fish of a school into a new array *fish. Free fish get the speeds of the steady
- * state in the file; free fish other than the first also get the places relative to the first fish. With before, the
- * path of another steady state, they get a + ratio (a - b) of the values a in path and b in before. The copies share
- * the memory of the original fish. Fails with STATUS_FILE if a file contains no steady state of this number of fish;
+/* Copy the fish of a school into a new array *fish. Free fish get the speeds of the steady state in the file; free fish
+ * other than the first also get the places relative to the first fish. The copies share the memory of the original
+ * fish. Fails with STATUS_FILE if a file contains no steady state of this number of fish;
  * *fish is then NULL. */
-enum status steady_start_read(struct arena *arena, const char *path, const char *before, double ratio,
-                              const struct school_parameters *school, struct fish_parameters **fish);
+enum status steady_start_read(struct arena *arena, const char *path, const struct school_parameters *school,
+                              struct fish_parameters **fish);
 
 /* Set the positions of the free nodes to the shapes of an equilibrium in a file, relative to the nose and to the
  * prescribed direction, in body lengths. arena: for scratch; y: all unknowns of the school. Fails with STATUS_FILE if

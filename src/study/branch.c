@@ -5,17 +5,14 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "base/mathematics.h"
 #include "base/text.h"
-#include "case/case.h"
 #include "case/case_table.h"
 #include "case/sweep.h"
 #include "result/durable.h"
-#include "result/result_row.h"
 #include "result/target.h"
 #include "run/simulate.h"
 #include "solver/newton.h"
@@ -23,14 +20,12 @@
 #include "study/member_file.h"
 #include "study/study_file.h"
 #include "study/study_folder.h"
+#include "study/threshold.h"
 
-/* A point of the branch has n + 1 coordinates: the n slow quantities over their scales, and the part of the way from
- * FROM to TO that the key has come.
- *
- * first_step: first step of the arclength. longest: largest step of a slow quantity and of the key. shortest: a step
- * that fails although it is this short ends the branch. A step grows after a correction with at most EASY
- * evaluations and shrinks after one with at least HARD. */
-static const double first_step = 0.1, longest = 0.3, shortest = 1e-3, grows = 1.6, shrinks = 0.6;
+/* first_step: first step of the arclength. longest: largest step of the key. shortest: a step that fails although it
+ * is this short ends the branch. A step grows after a correction with at most EASY evaluations and shrinks after one
+ * with at least HARD. bends: a correction longer than this part of the step may lead to another branch. */
+static const double first_step = 0.1, longest = 0.3, shortest = 1e-3, grows = 1.6, shrinks = 0.6, bends = 0.3;
 enum { EASY = 4, HARD = 7, CORRECTIONS = 10, MOST_POINTS = 300 };
 
 /* Increment of a difference, in a coordinate; a shorter step says less about the Jacobian than the noise. */
@@ -39,31 +34,24 @@ static const double difference = 0.01, telling = 2e-3;
 /* Largest step of Newton's method, in a coordinate. */
 static const double longest_correction = 0.25;
 
-/* LOCATIONS: most points for the location of a fold or of a loss of stability. A complex multiplier turns by at least
- * this angle, rad. */
+/* LOCATIONS: most points for the location of a fold. A complex multiplier turns by at least this angle, rad. */
 enum { LOCATIONS = 8 };
 static const double least_angle = 1e-3;
 
+/* The walk to a threshold ends where the excess is this multiple of its error. */
+static const double certain = 2;
+
+/* A secant this short in the arclength ends the search for a threshold. */
+static const double shortest_secant = 1e-4;
+
 static const char fold[] = "fold"; /* a label */
 
-struct point {
-    double *x;                 /* (n + 1) */
-    double arclength;          /* sum of the distances between the points up to here */
-    double size, error, angle; /* largest multiplier: absolute value, its error; angle in a beat, rad */
-    const char *label;         /* "": ordinary */
-    const char *file;          /* name of the file in the folder */
-    struct member_file member;
-};
-
-struct branch {
+struct walk {
     const struct branch_options *options;
+    const struct case_values *values;
     struct arena *arena;
-    const char *key;
-    double from, to;
-    int n;        /* slow quantities */
-    int n_states; /* files */
-    int n_points;
-    struct point **point; /* in the order of the branch                              (n_points) */
+    struct branch *branch;
+    int n; /* slow quantities */
     double tolerance;
     // the correction
     double *matrix;             /* Jacobian of the changes                              (n, n + 1) */
@@ -79,330 +67,434 @@ static double distance(int n, const double *a, const double *b) {
     return sqrt(square);
 }
 
-static double key_at(const struct branch *branch, const double *x) {
-    return branch->from + x[branch->n] * (branch->to - branch->from);
+static double key_at(const struct walk *walk, const double *x) {
+    const struct branch_options *const options = walk->options;
+    const double part = x[walk->n];
+    return fabs(part - 1) <= 0 ? options->to : options->from + part * (options->to - options->from);
 }
 
-static double excess(const struct point *point) {
-    return point->size - 1;
-}
-
-__attribute__((format(printf, 2, 3))) static void tell(const struct branch *branch, const char *format, ...) {
-    if (!branch->options->note) return;
-    char line[1024];
+__attribute__((format(printf, 2, 3))) static void tell(const struct walk *walk, const char *format, ...) {
+    if (!walk->options->note) return;
+    char line[2048];
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(line, sizeof line, format, arguments);
     va_end(arguments);
-    branch->options->note(line, branch->options->data);
+    walk->options->note(line, walk->options->data);
+}
+
+/* "largest multiplier 0.9033 +- 0.005", "growth +0.12 s-1". */
+static const char *stability_of(struct arena *arena, const struct branch *branch, const struct branch_point *point) {
+    if (!branch->has_beat) return arena_text(arena, "growth %+.4g s-1", point->excess);
+    return arena_text(arena, "largest multiplier %.4f +- %.2g", 1 + point->excess, point->error);
 }
 
 // ---- the case along the key
 
-/* The case with one value of the key, or with a sweep over the values of all points: into the arena of the values. */
-static enum status read_case(const struct branch *branch, struct case_values *values, const char *assignment) {
-    const struct branch_options *const options = branch->options;
-    const int n = options->n_assignments;
-    const char **all;
-    NEW(branch->arena, all, n + 1);
-    if (n > 0) memcpy(all, options->assignments, (size_t)n * sizeof *all);
-    all[n] = assignment;
-    return case_read(values, options->case_path, n + 1, all);
+/* The case with one more assignment, released with the arena. */
+static enum status case_with(const struct walk *walk, struct arena *arena, struct case_values **values,
+                             const char *assignment) {
+    const char *const assignments[] = {assignment};
+    return study_folder_parse(arena, values, walk->values->merged, walk->options->origin, 1, assignments);
 }
 
-static enum status read_case_at(const struct branch *branch, struct case_values *values, double value) {
-    return read_case(branch, values, arena_text(branch->arena, "%s=%.12g", branch->key, value));
+static enum status case_at(const struct walk *walk, struct arena *arena, struct case_values **values, double value) {
+    struct text assignment = {.arena = arena};
+    text_add(&assignment, "%s=", walk->options->key);
+    text_add_number(&assignment, value);
+    return case_with(walk, arena, values, assignment.text);
+}
+
+/* The study of some values of the key. list: numbers, separated by commas. */
+static enum status study_with(const struct walk *walk, struct arena *arena, struct case_values **study,
+                              const char *list) {
+    return case_with(walk, arena, study,
+                     arena_text(arena, "sweep=[{key: \"%s\", steady: true, values: [%s]}]", walk->options->key, list));
 }
 
 // ---- the correction: Newton's method for the changes in a beat and the plane
 
 /* The change in a beat at a point, with Broyden's update of the Jacobian. */
-static enum status evaluate(struct branch *branch, const double *x, double *change) {
-    const int n = branch->n;
-    struct case_values values;
-    TRY(read_case_at(branch, &values, key_at(branch, x)));
-    const enum status status = steady_change(&values, n, x, change, branch->options->stop);
-    case_free(&values);
-    TRY(status);
-    branch->n_evaluations++;
+static enum status evaluate(struct walk *walk, const double *x, double *change) {
+    const int n = walk->n;
+    struct case_values *values;
+    ARENA(scratch, walk->arena, "an evaluation");
+    TRY(case_at(walk, scratch, &values, key_at(walk, x)));
+    TRY(steady_change(values, n, x, change, walk->options->stop));
+    walk->n_evaluations++;
 
-    const double way = distance(n + 1, x, branch->last), square = way * way;
-    for (int i = 0; i < n && branch->has_last && way > telling; i++) {
-        double missing = change[i] - branch->last_change[i];
-        for (int j = 0; j <= n; j++) missing -= branch->matrix[i + j * n] * (x[j] - branch->last[j]);
-        for (int j = 0; j <= n; j++) branch->matrix[i + j * n] += missing / square * (x[j] - branch->last[j]);
+    const double way = distance(n + 1, x, walk->last), square = way * way;
+    for (int i = 0; i < n && walk->has_last && way > telling; i++) {
+        double missing = change[i] - walk->last_change[i];
+        for (int j = 0; j <= n; j++) missing -= walk->matrix[i + j * n] * (x[j] - walk->last[j]);
+        for (int j = 0; j <= n; j++) walk->matrix[i + j * n] += missing / square * (x[j] - walk->last[j]);
     }
-    memcpy(branch->last, x, (size_t)(n + 1) * sizeof *x);
-    memcpy(branch->last_change, change, (size_t)n * sizeof *change);
-    branch->has_last = true;
+    memcpy(walk->last, x, (size_t)(n + 1) * sizeof *x);
+    memcpy(walk->last_change, change, (size_t)n * sizeof *change);
+    walk->has_last = true;
     return STATUS_OK;
 }
 
 static enum status corrected_value(void *data, const double *x, double *value) {
-    struct branch *const branch = data;
-    const int n = branch->n;
-    TRY(evaluate(branch, x, value));
+    struct walk *const walk = data;
+    const int n = walk->n;
+    TRY(evaluate(walk, x, value));
     value[n] = 0;
-    for (int j = 0; j <= n; j++) value[n] += branch->border[j] * (x[j] - branch->anchor[j]);
+    for (int j = 0; j <= n; j++) value[n] += walk->border[j] * (x[j] - walk->anchor[j]);
     return STATUS_OK;
 }
 
 static enum status corrected_jacobian(void *data, double *matrix) {
-    const struct branch *const branch = data;
-    const int n = branch->n;
+    const struct walk *const walk = data;
+    const int n = walk->n;
     for (int j = 0; j <= n; j++) {
-        memcpy(matrix + j * (n + 1), branch->matrix + j * n, (size_t)n * sizeof *matrix);
-        matrix[n + j * (n + 1)] = branch->border[j];
+        memcpy(matrix + j * (n + 1), walk->matrix + j * n, (size_t)n * sizeof *matrix);
+        matrix[n + j * (n + 1)] = walk->border[j];
     }
     return STATUS_OK;
 }
 
-/* Move the point x onto the branch, in the plane through x normal to a vector. */
-static enum status correct(struct branch *branch, double *x, const double *normal) {
-    const int n = branch->n;
+/* Move the point x onto the branch, in the plane through x normal to a vector. Without slow quantities this is x. */
+static enum status correct(struct walk *walk, double *x, const double *normal) {
+    const int n = walk->n;
     double *scale;
-    ARENA(scratch, branch->arena, "a correction");
+    if (n == 0) return STATUS_OK;
+    ARENA(scratch, walk->arena, "a correction");
     NEW(scratch, scale, n + 1);
     for (int j = 0; j <= n; j++) scale[j] = longest_correction;
-    memcpy(branch->border, normal, (size_t)(n + 1) * sizeof *normal);
-    memcpy(branch->anchor, x, (size_t)(n + 1) * sizeof *x);
-    branch->n_evaluations = 0;
+    memcpy(walk->border, normal, (size_t)(n + 1) * sizeof *normal);
+    memcpy(walk->anchor, x, (size_t)(n + 1) * sizeof *x);
+    walk->n_evaluations = 0;
     const struct newton newton = {.n = n + 1,
                                   .scale = scale,
-                                  .tolerance = branch->tolerance / longest_correction,
+                                  .tolerance = walk->tolerance / longest_correction,
                                   .max_step = 1,
                                   .reuse = 1,
                                   .max_iterations = CORRECTIONS,
                                   .value = corrected_value,
                                   .jacobian = corrected_jacobian,
-                                  .data = branch};
+                                  .data = walk};
     return newton_solve(scratch, &newton, x);
 }
 
 /* The Jacobian by differences at a point. */
-static enum status find_jacobian(struct branch *branch, const double *x) {
-    const int n = branch->n;
-    ARENA(scratch, branch->arena, "a Jacobian");
+static enum status find_jacobian(struct walk *walk, const double *x) {
+    const int n = walk->n;
     double *at, *base, *change;
+    if (n == 0) return STATUS_OK;
+    ARENA(scratch, walk->arena, "a Jacobian");
     NEW(scratch, at, n + 1);
     NEW(scratch, base, n);
     NEW(scratch, change, n);
-    branch->has_last = false;
-    TRY(evaluate(branch, x, base));
+    walk->has_last = false;
+    TRY(evaluate(walk, x, base));
     for (int j = 0; j <= n; j++) {
         // of the key towards TO
         memcpy(at, x, (size_t)(n + 1) * sizeof *x);
         at[j] += difference;
-        branch->has_last = false;
-        TRY(evaluate(branch, at, change));
-        for (int i = 0; i < n; i++) branch->matrix[i + j * n] = (change[i] - base[i]) / difference;
+        walk->has_last = false;
+        TRY(evaluate(walk, at, change));
+        for (int i = 0; i < n; i++) walk->matrix[i + j * n] = (change[i] - base[i]) / difference;
     }
-    branch->has_last = false;
+    walk->has_last = false;
     return STATUS_OK;
 }
 
 // ---- points
 
 /* Write study.nc: the members in the order of the branch. */
-static enum status write_study(const struct branch *branch) {
-    ARENA(arena, branch->arena, "the study of a branch");
+static enum status write_study(const struct walk *walk) {
+    const struct branch *const branch = walk->branch;
+    const struct convergence_orders none = {0};
+    ARENA(arena, walk->arena, "the study of a branch");
     struct text list = {.arena = arena};
     struct member_file *member;
+    struct case_values *study;
     NEW(arena, member, branch->n_points);
-    text_add(&list, "sweep=[{key: \"%s\", steady: true, values: [", branch->key);
     for (int i = 0; i < branch->n_points; i++) {
-        const struct point *const point = branch->point[i];
-        text_add(&list, "%s%.12g", i > 0 ? ", " : "", key_at(branch, point->x));
+        const struct branch_point *const point = branch->point[i];
+        if (i > 0) text_add(&list, ", ");
+        text_add_number(&list, point->value);
         member[i] = point->member;
         member[i].number = i;
         member[i].label = point->label;
         member[i].file = point->file;
         member[i].arclength = point->arclength;
     }
-    text_add(&list, "]}]");
-    struct case_values study;
-    struct convergence_orders orders;
-    TRY(read_case(branch, &study, list.text));
-    convergence_orders_create(arena, &orders, &study, member);
-    const enum status status = study_file_write(arena, study_folder_path(arena, branch->options->folder, "study.nc"),
-                                                &study, member, &orders, NULL, branch->options->command);
-    case_free(&study);
-    return status;
+    TRY(study_with(walk, arena, &study, list.text));
+    return study_file_write(arena, study_folder_path(arena, walk->options->folder, "study.nc"), study, member, &none,
+                            NULL, walk->options->command);
 }
 
-/* Compute the steady state at a point, from a search (x NULL) or held, with its multipliers, write its file, and insert
- * the point into the branch as number at. */
-static enum status add_point(struct branch *branch, int at, const double *x) {
-    const struct branch_options *const options = branch->options;
-    struct point *point;
-    struct case_values values;
-    NEW(branch->arena, point, 1);
+/* The point whose state supplies the start of number at: its neighbour on the branch. */
+static const char *start_of(const struct walk *walk, int at) {
+    const struct branch *const branch = walk->branch;
+    if (branch->n_points == 0) return walk->options->start;
+    return study_folder_path(walk->arena, walk->options->folder, branch->point[at > 0 ? at - 1 : 0]->file);
+}
+
+/* Compute the steady state at a point with its stability: x NULL: at FROM, by a search; otherwise with the slow
+ * quantities held, or, of an equilibrium, from its neighbour. Write its file and insert the point as number at. */
+static enum status add_point(struct walk *walk, int at, const double *x, double arclength) {
+    const struct branch_options *const options = walk->options;
+    struct arena *const arena = walk->arena;
+    struct branch *const branch = walk->branch;
+    struct branch_point *point;
+    struct case_values *values;
+    NEW(arena, point, 1);
+    ARENA(scratch, arena, "a state");
     point->label = "";
-    point->file = arena_text(branch->arena, "state-%03d.nc", branch->n_states);
-    const char *const path = study_folder_path(branch->arena, options->folder, point->file);
-    struct steady_point found = {.arena = branch->arena}, held = {.n = branch->n, .value = (double *)(uintptr_t)x};
-    TRY(read_case_at(branch, &values, x ? key_at(branch, x) : branch->from));
+    point->file = arena_text(arena, "state-%03d.nc", branch->n_points);
+    point->arclength = arclength;
+    point->value = x ? key_at(walk, x) : options->from;
+    const char *const path = study_folder_path(arena, options->folder, point->file);
+    struct steady_point found = {.arena = arena}, held = {.n = walk->n, .value = (double *)(uintptr_t)x};
+    const bool is_held = x && walk->n > 0;
     const struct steady_options search = {.path = path,
-                                          .from = x ? NULL : options->start,
+                                          .from = is_held ? NULL : start_of(walk, at),
                                           .overwrite = true,
                                           .judges_stability = true,
-                                          .hold = x ? &held : NULL,
+                                          .hold = is_held ? &held : NULL,
                                           .found = &found,
                                           .command = options->command,
                                           .progress = options->progress,
+                                          .warn = options->warn,
                                           .data = options->data,
                                           .stop = options->stop};
-    const bool has_multipliers = values.steady.multipliers != NO;
-    branch->tolerance = values.steady.tolerance;
-    const enum status status = !has_multipliers
-                                   ? status_fail(STATUS_CASE,
-                                                 "a branch needs the multipliers: set steady.multipliers to "
-                                                 "true")
-                                   : steady_run(&values, &search);
-    case_free(&values);
-    if (status != STATUS_OK) {
-        unlink(path);
-        return status;
+    TRY(case_at(walk, scratch, &values, point->value));
+    enum status status = steady_run(values, &search);
+    if (status == STATUS_OK && !isfinite(found.real)) {
+        status = status_fail(STATUS_CASE,
+                             "%s: nothing in this case can be unstable: with a beat, a fish must be free to swim; "
+                             "without a beat, the modes need pressure.span: infinite, a stream, and shedding",
+                             options->option);
     }
-    if (found.n == 0) {
+    if (status != STATUS_OK) {
+        char reason[2048];
+        snprintf(reason, sizeof reason, "%s", status_message());
         unlink(path);
-        return status_fail(STATUS_CASE,
-                           "the steady state of this case has no slow quantities, and so no multipliers: all fish are "
-                           "held, or the bodies have no beat");
+        return status_fail(status, "%s", reason);
     }
 
-    TRY(member_file_read(branch->arena, &point->member, path));
-    branch->n = found.n;
-    NEW(branch->arena, point->x, found.n + 1);
-    if (!x) {
-        memcpy(point->x, found.value, (size_t)found.n * sizeof *found.value);
-    } else {
+    TRY(member_file_read(arena, &point->member, path));
+    walk->n = found.n;
+    walk->tolerance = values->steady.tolerance;
+    branch->has_beat = found.has_beat;
+    NEW(arena, point->x, found.n + 1);
+    if (x) {
         memcpy(point->x, x, (size_t)(found.n + 1) * sizeof *x);
+    } else if (found.n > 0) {
+        memcpy(point->x, found.value, (size_t)found.n * sizeof *found.value);
     }
-    point->size = hypot(found.real, found.imaginary);
+
+    // an angle per beat, or of an equilibrium per second
+    const double angle = found.has_beat ? atan2(fabs(found.imaginary), found.real) : fabs(found.imaginary);
+    point->excess = found.has_beat ? hypot(found.real, found.imaginary) - 1 : found.real;
     point->error = found.error;
-    point->angle = atan2(fabs(found.imaginary), found.real);
-    branch->n_states++;
-    GROW(branch->arena, branch->point, branch->n_points + 1);
+    point->period = angle > least_angle ? 2 * M_PI / angle : 0;
+    GROW(arena, branch->point, branch->n_points + 1);
     memmove(branch->point + at + 1, branch->point + at, (size_t)(branch->n_points - at) * sizeof *branch->point);
     branch->point[at] = point;
     branch->n_points++;
-    for (int i = at; i < branch->n_points; i++) {
-        struct point *const *const p = branch->point + i;
-        p[0]->arclength = i == 0 ? 0 : p[-1]->arclength + distance(branch->n + 1, p[-1]->x, p[0]->x);
-    }
-
-    char period[64] = "";
-    if (point->angle > least_angle) snprintf(period, sizeof period, ", period %.3g beats", 2 * M_PI / point->angle);
-    tell(branch, "%s = %.6g: largest multiplier %.4f +- %.2g%s", branch->key, key_at(branch, point->x), point->size,
-         point->error, period);
-    return write_study(branch);
+    tell(walk, "%s = %.6g: %s%s", options->key, point->value, stability_of(scratch, branch, point),
+         point->period <= 0 ? ""
+                            : arena_text(scratch, ", period %.3g %s", point->period, branch->has_beat ? "beats" : "s"));
+    return write_study(walk);
 }
 
-// ---- folds and losses of stability
+// ---- between the points
 
-/* What the crossing of the multiplier is called. */
-static const char *crossing_of(const struct point *point) {
-    if (point->angle < least_angle) return "multiplier +1";
-    return M_PI - point->angle < least_angle ? "period doubling" : "Neimark-Sacker";
+/* The number of the first of the points, two or three, that are nearest to the way from number at to the next. */
+static int parabola_at(const struct branch *branch, int at) {
+    return at < branch->n_points - 3 ? at : branch->n_points > 3 ? branch->n_points - 3 : 0;
 }
 
-/* Add a point at an arclength between points number at and at + 1: at first on the parabola through these and a
- * neighbour, then moved onto the branch in the plane normal to their distance. */
-static enum status add_between(struct branch *branch, int at, double arclength) {
-    ARENA(scratch, branch->arena, "a point between");
-    const int size = branch->n + 1, others = branch->n_points - 3;
-    const int first = at < others ? at : others > 0 ? others : 0, n = branch->n_points < 3 ? 2 : 3;
-    const struct point *const a = branch->point[at], *const b = branch->point[at + 1];
-    double *x, *side;
-    NEW(scratch, x, size);
-    NEW(scratch, side, size);
+/* A coordinate on the parabola through three points from number first on, or on the line through two. */
+static double parabola(const struct branch *branch, int first, double arclength, int coordinate) {
+    const int n = branch->n_points < 3 ? 2 : 3;
+    double value = 0;
     for (int i = first; i < first + n; i++) {
         double part = 1;
         for (int k = first; k < first + n; k++) {
             const double from = branch->point[k]->arclength;
             if (k != i) part *= (arclength - from) / (branch->point[i]->arclength - from);
         }
-        for (int j = 0; j < size; j++) x[j] += part * branch->point[i]->x[j];
+        value += part * branch->point[i]->x[coordinate];
     }
-    for (int j = 0; j < size; j++) side[j] = (b->x[j] - a->x[j]) / distance(size, a->x, b->x);
-    TRY(correct(branch, x, side));
-    return add_point(branch, at + 1, x);
+    return value;
+}
+
+/* Add a point at an arclength between points number at and at + 1: at first on the parabola, then moved onto the
+ * branch in the plane normal to their distance. */
+static enum status add_between(struct walk *walk, int at, double arclength) {
+    ARENA(scratch, walk->arena, "a point between");
+    const struct branch *const branch = walk->branch;
+    const int size = walk->n + 1, first = parabola_at(branch, at);
+    const struct branch_point *const a = branch->point[at], *const b = branch->point[at + 1];
+    double *x, *side;
+    NEW(scratch, x, size);
+    NEW(scratch, side, size);
+    for (int j = 0; j < size; j++) {
+        x[j] = parabola(branch, first, arclength, j);
+        side[j] = (b->x[j] - a->x[j]) / distance(size, a->x, b->x);
+    }
+    TRY(correct(walk, x, side));
+    return add_point(walk, at + 1, x, arclength);
 }
 
 /* Locate the fold near point number at, where the key comes farther than at both neighbours: by parabolas. */
-static enum status locate_fold(struct branch *branch, int at) {
-    const int k = branch->n;
+static enum status locate_fold(struct walk *walk, int at) {
+    struct branch *const branch = walk->branch;
+    const int k = walk->n;
     const double side = branch->point[at]->x[k] - branch->point[at - 1]->x[k];
     for (int i = 0; i < LOCATIONS; i++) {
-        const struct point *const a = branch->point[at - 1], *const b = branch->point[at],
-                                  *const c = branch->point[at + 1];
+        const struct branch_point *const a = branch->point[at - 1], *const b = branch->point[at],
+                                         *const c = branch->point[at + 1];
         const double before = b->arclength - a->arclength, after = c->arclength - b->arclength;
         const double slope_before = (b->x[k] - a->x[k]) / before, slope_after = (c->x[k] - b->x[k]) / after;
 
         // the vertex of the parabola, from b, and what the key gains up to there
         const double bend = (slope_after - slope_before) / (before + after);
         const double slope = slope_before + bend * before, way = -slope / (2 * bend);
-        if (fabs(slope * way / 2) <= branch->tolerance) break;
-        TRY(add_between(branch, way < 0 ? at - 1 : at, b->arclength + way));
+        if (fabs(slope * way / 2) <= walk->tolerance) break;
+        TRY(add_between(walk, way < 0 ? at - 1 : at, b->arclength + way));
         const int added = way < 0 ? at : at + 1, old = way < 0 ? at + 1 : at;
         at = (branch->point[added]->x[k] - branch->point[old]->x[k]) * side > 0 ? added : old;
     }
     branch->point[at]->label = fold;
-    return write_study(branch);
+    return write_study(walk);
 }
 
-/* Locate the crossing of 1 by the largest multiplier between points number at and at + 1: by secants, with half of the
- * weight of an end that stays twice (Illinois). */
-static enum status locate_crossing(struct branch *branch, int at) {
-    double low = excess(branch->point[at]), high = excess(branch->point[at + 1]);
-    int stays = 0, crossing = -1;
-    for (int i = 0; i < LOCATIONS && crossing < 0; i++) {
-        const struct point *const a = branch->point[at], *const b = branch->point[at + 1];
-        if (fabs(b->x[branch->n] - a->x[branch->n]) <= branch->tolerance) break;
-        const double part = fmin(fmax(low / (low - high), 0.05), 0.95);
-        TRY(add_between(branch, at, a->arclength + part * (b->arclength - a->arclength)));
-        const struct point *const now = branch->point[at + 1];
-        if (fabs(excess(now)) <= now->error / 4) crossing = at + 1;
-        const bool is_before = excess(now) * excess(a) > 0;
-        if (is_before) {
-            at++;
-            low = excess(now);
-            if (stays > 0) high /= 2;
+// ---- thresholds
+
+static const char *kind_of(const struct branch *branch, const struct branch_point *point) {
+    if (!branch->has_beat) return point->period > 0 ? "flutter" : "divergence";
+    if (point->period <= 0) return "multiplier +1";
+    return M_PI - 2 * M_PI / point->period < least_angle ? "period doubling" : "Neimark-Sacker";
+}
+
+static enum status find_between(void *data, struct threshold_point *point) {
+    struct walk *const walk = data;
+    const struct branch *const branch = walk->branch;
+    int at = 0;
+    while (at < branch->n_points - 2 && branch->point[at + 1]->arclength <= point->at) at++;
+    TRY(add_between(walk, at, point->at));
+    point->excess = branch->point[at + 1]->excess;
+    point->error = branch->point[at + 1]->error;
+    return STATUS_OK;
+}
+
+static bool is_unstable(const struct branch_point *point) {
+    return point->excess > 0;
+}
+
+/* The number of the first point from number at on after which the stability changes; -1: there is none. */
+static int next_change(const struct branch *branch, int at) {
+    for (; at + 1 < branch->n_points; at++) {
+        if (is_unstable(branch->point[at]) != is_unstable(branch->point[at + 1])) return at;
+    }
+    return -1;
+}
+
+/* Whether the key turns back near a point: among the two points before it and the two after it. */
+static bool turns_near(const struct walk *walk, int at) {
+    const struct branch *const branch = walk->branch;
+    const int k = walk->n, first = at > 2 ? at - 2 : 0;
+    double last = 0;
+    for (int i = first; i < at + 2 && i + 1 < branch->n_points; i++) {
+        const double step = branch->point[i + 1]->x[k] - branch->point[i]->x[k];
+        if (step * last < 0) return true;
+        last = step;
+    }
+    return false;
+}
+
+/* Locate the change of stability between points number at and at + 1. If this fails with STATUS_SOLVER or
+ * STATUS_CONTACT, the nearer of the points found so far has the label, and the threshold no bar. */
+static enum status locate_threshold(struct walk *walk, int at) {
+    struct branch *const branch = walk->branch;
+    struct arena *const arena = walk->arena;
+    struct threshold_search search = {
+        .shortest = shortest_secant, .find = find_between, .data = walk, .n = branch->n_points};
+    struct threshold found = {.by_error = NAN, .by_secant = NAN, .slope = NAN};
+    const double from = branch->point[at]->arclength, to = branch->point[at + 1]->arclength;
+    NEW(arena, search.point, search.n);
+    for (int i = 0; i < search.n; i++) {
+        const struct branch_point *const point = branch->point[i];
+        search.point[i] =
+            (struct threshold_point){.at = point->arclength, .excess = point->excess, .error = point->error};
+    }
+    const enum status status = threshold_solve(arena, &search, at, at + 1, &found);
+    if (status != STATUS_OK && status != STATUS_SOLVER && status != STATUS_CONTACT) return status;
+    char reason[2048];
+    snprintf(reason, sizeof reason, "%s", status_message());
+
+    // the point of the least excess between the two ends, and the unstable one that is nearest to it
+    int nearest = -1;
+    for (int i = at; branch->point[i]->arclength <= to; i++) {
+        if (nearest < 0 || fabs(branch->point[i]->excess) < fabs(branch->point[nearest]->excess)) nearest = i;
+        if (i + 1 == branch->n_points) break;
+    }
+    struct branch_point *const point = branch->point[nearest];
+    const struct branch_point *unstable = point;
+    for (int way = 0; way <= 1 && !is_unstable(unstable); way++) {
+        const int next = nearest + (way ? 1 : -1);
+        if (next >= 0 && next < branch->n_points) unstable = branch->point[next];
+    }
+
+    // from the arclength to the key, which turns at a fold: along the parabola through the nearest points
+    const int first = parabola_at(branch, nearest > 0 ? nearest - 1 : 0), k = walk->n;
+    const double way = walk->options->to - walk->options->from;
+    struct branch_threshold threshold = {
+        .nearest = point, .value = point->value, .bar = NAN, .period = unstable->period};
+    point->label = turns_near(walk, nearest) && unstable->period <= 0 ? fold : kind_of(branch, unstable);
+    if (status == STATUS_OK) {
+        const double parts[] = {found.by_error, found.by_secant};
+        double bars[2];
+        const double key = parabola(branch, first, found.at, k);
+        for (int i = 0; i < 2; i++) {
+            const double less = parabola(branch, first, found.at - parts[i], k) - key;
+            const double more = parabola(branch, first, found.at + parts[i], k) - key;
+            bars[i] = fabs(way) * larger(fabs(less), fabs(more));
+        }
+        const double rate = (parabola(branch, first, to, k) - parabola(branch, first, from, k)) / (to - from) * way;
+        threshold.value = walk->options->from + key * way;
+        threshold.by_error = bars[0];
+        threshold.by_secant = bars[1];
+        threshold.bar = bars[0] + bars[1];
+        threshold.slope = found.slope / rate;
+    }
+    threshold.is_fold = point->label == fold;
+    threshold.is_unstable_above = is_unstable(branch->point[at]) == (branch->point[at]->value > threshold.value);
+    GROW(arena, branch->threshold, branch->n_thresholds + 1);
+    branch->threshold[branch->n_thresholds++] = threshold;
+    TRY(write_study(walk));
+    return status == STATUS_OK ? status : status_fail(status, "%s", reason);
+}
+
+/* Locate all changes of stability, then the folds that are none: there a multiplier other than the largest passes 1. */
+static enum status locate_all(struct walk *walk) {
+    struct branch *const branch = walk->branch;
+    const int k = walk->n;
+    for (int at = next_change(branch, 0); at >= 0; at = next_change(branch, at + 1)) {
+        const struct branch_point *const b = branch->point[at + 1];
+        const enum status status = locate_threshold(walk, at);
+        if (status == STATUS_SOLVER || status == STATUS_CONTACT) {
+            tell(walk, "the change of stability near %s = %.6g has no bar: %s", walk->options->key, b->value,
+                 status_message());
         } else {
-            high = excess(now);
-            if (stays < 0) low /= 2;
+            TRY(status);
         }
-        stays = is_before ? 1 : -1;
+        while (branch->point[at + 1] != b) at++;
     }
-
-    // the end that is nearer
-    if (crossing < 0) crossing = fabs(excess(branch->point[at])) < fabs(excess(branch->point[at + 1])) ? at : at + 1;
-    branch->point[crossing]->label = crossing_of(branch->point[crossing]);
-    return write_study(branch);
-}
-
-/* Locate all folds, then all crossings of 1. At a fold a real multiplier is 1, within its error. */
-static enum status locate_all(struct branch *branch) {
-    const int k = branch->n;
     for (int i = 1; i + 1 < branch->n_points; i++) {
-        struct point *const *const p = branch->point + i;
-        const bool is_fold = (p[0]->x[k] - p[-1]->x[k]) * (p[1]->x[k] - p[0]->x[k]) < 0;
+        struct branch_point *const *const p = branch->point + i;
+        const bool turns = (p[0]->x[k] - p[-1]->x[k]) * (p[1]->x[k] - p[0]->x[k]) < 0;
         bool is_known = false;
-        for (int j = i - 1; j <= i + 1; j++) is_known |= branch->point[j]->label == fold;
-        if (is_fold && !is_known) TRY(locate_fold(branch, i));
-    }
-    for (int i = 0; i + 1 < branch->n_points; i++) {
-        const struct point *const a = branch->point[i], *const b = branch->point[i + 1];
-        bool is_near = false;
-        for (int j = i - 1; j <= i + 2; j++) {
-            is_near |= j >= 0 && j < branch->n_points && branch->point[j]->label == fold;
+        for (int j = i > 2 ? i - 2 : 0; j <= i + 2 && j < branch->n_points; j++) {
+            is_known |= branch->point[j]->label == fold;
         }
-        const bool is_real = fmin(a->angle, b->angle) < least_angle;
-        if (!(excess(a) * excess(b) < 0) || (is_near && is_real)) continue;
-        const int n_before = branch->n_points;
-        TRY(locate_crossing(branch, i));
-        i += branch->n_points - n_before;
+        if (turns && !is_known) TRY(locate_fold(walk, i));
     }
     return STATUS_OK;
 }
@@ -411,9 +503,9 @@ static enum status locate_all(struct branch *branch) {
 
 /* Whether the way from one point to another leaves the range of the key; the other point is then moved to the end of
  * the range. The first step may not leave it at FROM. */
-static bool cut_at_end(const struct branch *branch, const double *from, double *x) {
-    const int k = branch->n;
-    if (x[k] < 1 && (x[k] > 0 || branch->n_points == 1)) return false;
+static bool cut_at_end(const struct walk *walk, const double *from, double *x) {
+    const int k = walk->n;
+    if (x[k] < 1 && (x[k] > 0 || walk->branch->n_points == 1)) return false;
     const double end = x[k] >= 1 ? 1 : 0, part = (end - from[k]) / (x[k] - from[k]);
     for (int j = 0; j < k; j++) x[j] = from[j] + part * (x[j] - from[j]);
     x[k] = end;
@@ -421,25 +513,28 @@ static bool cut_at_end(const struct branch *branch, const double *from, double *
 }
 
 /* Follow the branch from its first point: predictions along the last step, corrections in the plane normal to it. */
-static enum status follow(struct branch *branch) {
-    TRY(add_point(branch, 0, NULL));
-    const int n = branch->n, size = n + 1;
-    double *x, *way, *along;
-    NEW(branch->arena, branch->matrix, n * size);
-    NEW(branch->arena, branch->last, size);
-    NEW(branch->arena, branch->last_change, n);
-    NEW(branch->arena, branch->border, size);
-    NEW(branch->arena, branch->anchor, size);
-    NEW(branch->arena, x, size);
-    NEW(branch->arena, way, size);
-    NEW(branch->arena, along, size);
+static enum status follow(struct walk *walk) {
+    struct branch *const branch = walk->branch;
+    struct arena *const arena = walk->arena;
+    TRY(add_point(walk, 0, NULL, 0));
+    const int n = walk->n, size = n + 1;
+    double *x, *predicted, *way, *along;
+    NEW(arena, walk->matrix, n * size);
+    NEW(arena, walk->last, size);
+    NEW(arena, walk->last_change, n);
+    NEW(arena, walk->border, size);
+    NEW(arena, walk->anchor, size);
+    NEW(arena, x, size);
+    NEW(arena, predicted, size);
+    NEW(arena, way, size);
+    NEW(arena, along, size);
     along[n] = way[n] = 1;
 
     // a search leaves the tolerance, and the wake of its last steps; the branch begins where held quantities stay
-    const struct point *now = branch->point[0];
-    TRY(find_jacobian(branch, now->x));
-    TRY(correct(branch, branch->point[0]->x, along));
-    TRY(newton_tangent(branch->arena, n, branch->matrix, way));
+    const struct branch_point *now = branch->point[0];
+    TRY(find_jacobian(walk, now->x));
+    TRY(correct(walk, branch->point[0]->x, along));
+    if (n > 0) TRY(newton_tangent(arena, n, walk->matrix, way));
 
     double step = first_step;
     for (bool is_end = false; !is_end;) {
@@ -447,106 +542,81 @@ static enum status follow(struct branch *branch) {
             return status_fail(STATUS_SOLVER, "the branch does not end within %d states", MOST_POINTS);
         }
 
-        // no coordinate moves too far
-        double most = 0;
-        for (int j = 0; j < size; j++) most = larger(most, fabs(way[j]));
-        const double length = fmin(step, longest / most);
+        const double length = fabs(way[n]) * step > longest ? longest / fabs(way[n]) : step;
         for (int j = 0; j < size; j++) x[j] = now->x[j] + length * way[j];
-        is_end = cut_at_end(branch, now->x, x);
-        enum status status = correct(branch, x, is_end ? along : way);
-        const int n_evaluations = branch->n_evaluations;
-        if (status == STATUS_OK && !is_end && cut_at_end(branch, now->x, x)) {
+        is_end = cut_at_end(walk, now->x, x);
+        memcpy(predicted, x, (size_t)size * sizeof *x);
+        enum status status = correct(walk, x, is_end ? along : way);
+        const int n_evaluations = walk->n_evaluations;
+        if (status == STATUS_OK && !is_end && cut_at_end(walk, now->x, x)) {
             is_end = true;
-            status = correct(branch, x, along);
+            status = correct(walk, x, along);
         }
 
-        // a correction that is longer than the step leads to another branch
-        if (status == STATUS_OK && distance(size, now->x, x) > 2 * length) {
-            status = status_fail(STATUS_SOLVER, "the correction leads away from the branch");
+        const double moved = distance(size, now->x, x), corrected = distance(size, predicted, x);
+        if (status == STATUS_OK && length > shortest && corrected > larger(bends * length, 10 * walk->tolerance)) {
+            status = status_fail(STATUS_SOLVER, "the branch bends too much, or the correction leads to another one");
         }
-        if (status == STATUS_OK) status = add_point(branch, branch->n_points, x);
+        if (status == STATUS_OK) status = add_point(walk, branch->n_points, x, now->arclength + moved);
         if (status == STATUS_SOLVER || status == STATUS_CONTACT) {
             if (length / 2 < shortest) return status;
-            tell(branch, "%s = %.6g: the step is halved, because %s", branch->key, key_at(branch, x), status_message());
+            tell(walk, "%s = %.6g: the step is halved, because %s", walk->options->key, key_at(walk, x),
+                 status_message());
             step = length / 2;
             is_end = false;
-            TRY(find_jacobian(branch, now->x));
+            TRY(find_jacobian(walk, now->x));
             continue;
         }
         TRY(status);
-        const struct point *const next = branch->point[branch->n_points - 1];
-        const double moved = distance(size, now->x, next->x);
-        for (int j = 0; j < size && moved > 0; j++) way[j] = (next->x[j] - now->x[j]) / moved;
-        now = next;
+        for (int j = 0; j < size && moved > 0; j++) way[j] = (x[j] - now->x[j]) / moved;
+        now = branch->point[branch->n_points - 1];
         step = n_evaluations <= EASY ? length * grows : n_evaluations >= HARD ? length * shrinks : length;
+
+        // beyond a threshold go on until the state has the other stability for certain
+        if (walk->options->to_threshold && next_change(branch, 0) >= 0 && fabs(now->excess) > certain * now->error)
+            break;
     }
     return STATUS_OK;
 }
 
+/* The first threshold of a branch that ends there, or why there is none. */
+static enum status locate_first(struct walk *walk) {
+    const struct branch *const branch = walk->branch;
+    const int at = next_change(branch, 0);
+    if (at >= 0) return locate_threshold(walk, at);
+    const struct branch_point *const first = branch->point[0], *const last = branch->point[branch->n_points - 1];
+    const double nearer = smaller(fabs(first->excess) - first->error, fabs(last->excess) - last->error);
+    return status_fail(STATUS_SOLVER, "no threshold between the ends: the state is %s at both%s",
+                       is_unstable(first) ? "unstable" : "stable",
+                       fabs(first->excess - last->excess) <= 0 ? ", and the key has no effect on it"
+                       : nearer <= 0 ? "; at one end 1 is within the error of the multiplier: move this end outwards"
+                                     : "");
+}
+
 /* The reason of a failure, and how far the branch came. */
-static enum status fail_with_branch(const struct branch *branch, enum status status) {
-    char reason[2048];
-    snprintf(reason, sizeof reason, "%s", status_message());
-    if (branch->n_points == 0) return status_fail(status, "%s", reason);
-    if (status == STATUS_STOPPED) {
-        snprintf(reason, sizeof reason, "stopped %s", simulate_stopped_by(branch->options->stop));
-    }
-    const struct point *const last = branch->point[branch->n_points - 1];
+static enum status fail_with_branch(const struct walk *walk, enum status status) {
+    const struct branch *const branch = walk->branch;
+    const char *const folder = walk->options->folder;
     const int n = branch->n_points;
-    return status_fail(
-        status, "%s; %d steady state%s found, %s %s = %.6g with the largest multiplier %.4f +- %.2g: %s/study.nc",
-        reason, n, n > 1 ? "s were" : " was", n > 1 ? "up to" : "at", branch->key, key_at(branch, last->x), last->size,
-        last->error, branch->options->folder);
-}
-
-// ---- the report
-
-static void print_table(const struct branch *branch, FILE *stream) {
-    const char *const dot = strrchr(branch->key, '.');
-    const int n_fish = branch->point[0]->member.n_fish;
-    fprintf(stream, "%12s  %10s", dot ? dot + 1 : branch->key, "speed m/s");
-    if (n_fish > 1) fprintf(stream, "  %21s", "place of the last, m");
-    fprintf(stream, "  %20s  %9s  %s\n", "largest multiplier", "period", "");
-    for (int i = 0; i < branch->n_points; i++) {
-        const struct point *const point = branch->point[i];
-        const int place = member_file_quantity_number("steady_place");
-        fprintf(stream, "%12.6g  %10.5g", key_at(branch, point->x),
-                member_file_number(&point->member, "steady_speed", 0));
-        if (n_fish > 1) {
-            fprintf(stream, "  %10.4f %10.4f", member_file_value(&point->member, place, n_fish - 1, 0),
-                    member_file_value(&point->member, place, n_fish - 1, 1));
-        }
-        fprintf(stream, "  %9.4f +- %7.2g", point->size, point->error);
-        if (point->angle > least_angle)
-            fprintf(stream, "  %9.3g", 2 * M_PI / point->angle);
-        else
-            fprintf(stream, "  %9s", "-");
-        fprintf(stream, "  %s%s%s\n", steady_verdict(point->size, point->error), *point->label ? ", " : "",
-                point->label);
+    ARENA(scratch, walk->arena, "a message");
+    const char *reason = arena_text(scratch, "%s", status_message());
+    if (n == 0) return status;
+    const struct branch_point *const last = branch->point[n - 1];
+    if (status == STATUS_STOPPED) {
+        reason = arena_text(scratch, "stopped %s; --from %s/%s goes on from the last state",
+                            simulate_stopped_by(walk->options->stop), folder, last->file);
     }
-}
-
-static void print_json(const struct branch *branch, FILE *stream) {
-    text_print_member(stream, "{", "key", branch->key);
-    fprintf(stream, ", \"points\": [");
-    for (int i = 0; i < branch->n_points; i++) {
-        const struct point *const point = branch->point[i];
-        fprintf(stream,
-                "%s\n  {\"value\": %.12g, \"arclength\": %.9g, \"multiplier\": %.9g, \"error\": %.3g, \"angle\": %.6g",
-                i > 0 ? "," : "", key_at(branch, point->x), point->arclength, point->size, point->error, point->angle);
-        text_print_member(stream, ", ", "label", point->label);
-        text_print_member(stream, ", ", "file", point->file);
-        fprintf(stream, "}");
-    }
-    fprintf(stream, "]}\n");
+    return status_fail(status, "%s; %d steady state%s found, %s %s = %.6g with the %s: %s/study.nc", reason, n,
+                       n > 1 ? "s were" : " was", n > 1 ? "up to" : "at", walk->options->key, last->value,
+                       stability_of(scratch, branch, last), folder);
 }
 
 // ---- the folder
 
 /* Remove the files of an earlier branch. study: path of its study.nc */
-static void remove_earlier(const struct branch *branch, const char *study) {
+static void remove_earlier(const struct walk *walk, const char *study) {
     glob_t found;
-    const char *const pattern = study_folder_path(branch->arena, branch->options->folder, "state-[0-9][0-9][0-9].nc");
+    const char *const pattern = study_folder_path(walk->arena, walk->options->folder, "state-[0-9][0-9][0-9].nc");
     if (glob(pattern, GLOB_NOSORT, NULL, &found) == 0) {
         for (size_t i = 0; i < found.gl_pathc; i++) {
             if (target_is(found.gl_pathv[i], TARGET_NETCDF)) unlink(found.gl_pathv[i]);
@@ -556,58 +626,55 @@ static void remove_earlier(const struct branch *branch, const char *study) {
     if (target_is(study, TARGET_NETCDF)) unlink(study);
 }
 
-enum status branch_follow(const struct branch_options *options, FILE *stream) {
-    ARENA(arena, NULL, "a branch");
-    struct branch *branch;
-    NEW(arena, branch, 1);
-    branch->options = options;
-    branch->arena = arena;
-    branch->key = options->key;
-    branch->from = options->from;
-    branch->to = options->to;
-
-    // a key that does not vary continuously, or a case that cannot be read, creates no folder
-    struct case_values values;
-    TRY(read_case(
-        branch, &values,
-        arena_text(arena, "sweep=[{key: \"%s\", values: [%.12g, %.12g]}]", branch->key, branch->from, branch->to)));
-    const enum key_type type = case_table_row(values.sweep[0].key[0].row)->type;
-    case_free(&values);
+/* Refuse a key that does not vary continuously, and a case without a steady state or without its stability at either
+ * end: before a folder is created. */
+static enum status refuse(struct walk *walk) {
+    const struct branch_options *const options = walk->options;
+    ARENA(scratch, walk->arena, "the ends");
+    struct case_values *values;
+    struct text list = {.arena = scratch};
+    text_add_number(&list, options->from);
+    text_add(&list, ", ");
+    text_add_number(&list, options->to);
+    TRY(study_with(walk, scratch, &values, list.text));
+    const struct sweep_key *const key = &values->sweep[0].key[0];
+    const enum key_type type = case_table_row(key->row)->type;
+    walk->branch->unit = arena_text(walk->arena, "%s", key->unit);
     if (type != REAL && type != DURATION) {
         return status_fail(STATUS_CASE,
-                           "--continue: %s is %s, which has no values in between: compare its values in a study, with "
+                           "%s: %s is %s, which has no values in between: compare its values in a study, with "
                            "`steady: true` on the axis",
-                           branch->key, type == INTEGER ? "an integer" : "not a number");
+                           options->option, options->key, type == INTEGER ? "an integer" : "not a number");
     }
-    enum status status = STATUS_OK;
-    for (int end = 1; end >= 0 && status == STATUS_OK; end--) {
-        TRY(read_case_at(branch, &values, end ? branch->to : branch->from));
-        status = sweep_refuse(&values);
-        if (status == STATUS_OK) status = steady_refuse(&values);
-        case_free(&values);
+    if (walk->values->steady.multipliers == NO) {
+        return status_fail(STATUS_CASE, "%s needs the multipliers: set steady.multipliers to true", options->option);
     }
-    TRY(status);
+    TRY(case_at(walk, scratch, &values, options->to));
+    TRY(steady_refuse(values));
+    TRY(case_at(walk, scratch, &values, options->from));
+    return steady_refuse(values);
+}
+
+enum status branch_follow(struct arena *arena, const struct case_values *values, const struct branch_options *options,
+                          struct branch **branch) {
+    struct walk *walk;
+    NEW(arena, walk, 1);
+    NEW(arena, *branch, 1);
+    *walk = (struct walk){.options = options, .values = values, .arena = arena, .branch = *branch};
+    TRY(refuse(walk));
 
     // another call may be writing its branch into this folder
     const char *const study = study_folder_path(arena, options->folder, "study.nc");
     struct durable_claim claim;
     if (access(study, F_OK) == 0 && !options->force) {
-        return status_fail(STATUS_FILE, "%s exists: replace the branch with --force, or choose another folder with -o",
-                           study);
+        return status_fail(STATUS_FILE, "%s exists: replace it with --force, or choose another folder with -o", study);
     }
     TRY(study_folder_create(options->folder));
     TRY(durable_claim_take(&claim, study));
-    remove_earlier(branch, study);
-    status = follow(branch);
-    if (status == STATUS_OK) status = locate_all(branch);
-    if (status != STATUS_OK) {
-        status = fail_with_branch(branch, status);
-    } else if (options->as_json) {
-        print_json(branch, stream);
-    } else {
-        fprintf(stream, "%s/study.nc\n\n", options->folder);
-        print_table(branch, stream);
-    }
+    remove_earlier(walk, study);
+    enum status status = follow(walk);
+    if (status == STATUS_OK) status = options->to_threshold ? locate_first(walk) : locate_all(walk);
+    if (status != STATUS_OK) fail_with_branch(walk, status);
     durable_claim_release(&claim);
     return status;
 }

@@ -48,7 +48,7 @@ end
 run steady flag.yaml --threshold "$key=40000:120000" --json -o flag
 check a_threshold_is_found test "$code" = 0
 cp out flag.json
-check every_search_is_reported test "$(grep -c '^fish.*body.modulus = .*growth' err)" = "$(grep -c '"value"' flag.json)"
+check every_state_is_reported test "$(grep -c '^fish.*body.modulus = .*growth' err)" = "$(grep -c '"value"' flag.json)"
 cat >look.py <<'end'
 """ends: two values just outside of the bar. study: whether the file has all points."""
 import json
@@ -111,31 +111,50 @@ assert abs(80 / crossings - found["period"]) < 0.3, (crossings, found)
 end
 check runs_decay_and_grow_on_the_two_sides /usr/bin/python3 grow.py
 
-# ---- a second call repeats no search, and does not mix two of them
+# ---- the stable side of a branch ends at a fold: the follower falls back until its place is gone
 
-sum=$(cksum <flag/member-0001.nc)
-run steady flag.yaml --threshold "$key=40000:120000" --json -o flag -q
-check a_second_call_repeats_nothing test "$code" = 0 -a "$sum" = "$(cksum <flag/member-0001.nc)" -a ! -s err
-check with_the_same_result cmp -s out flag.json
-refused other_results_are_kept 4 'member-0000.nc is a result of another search' \
+cat >follow.yaml <<'end'
+format: 1
+time: {end: 20, shedding_interval: 0.05, output_interval: 0.1}
+fluid: {density: 1, viscosity: 2e-3}
+wake: {lifetime: 3, smoothing: 0.2}
+steady: {formation: true, tolerance: 1e-3}
+defaults:
+  fish:
+    nodes: 4
+    sheet_points: 13
+    force: pressure
+    pressure: {span: infinite, suction_limit: 0}
+    drag: {skin: laminar}
+    start: {speed: 3.8}
+    wave: {amplitude: 0, frequency: 0}
+    body: {profile: uniform, thickness: 0.05, depth: 1, density: 20, modulus: 1e6}
+    motion: {prescribed: all, surge: free, heave: 0.15, frequency: 1}
+fish:
+  - {name: leader}
+  - {name: follower, start: {position: [5.5, 0]}, motion: {heave: 0.09}}
+end
+run steady follow.yaml --threshold 'fish[1].motion.heave=0.083:0.07' -o fold
+check a_fold_is_named has out 'a fold: the steady states of this branch end there'
+check it_has_a_bar grep -qE 'heave = 0[.]078[0-9]* \+- 0[.]0000' out
+
+# ---- a result is kept, and what cannot be found leaves what was found before
+
+refused another_result_is_kept 4 'flag/study.nc exists: replace it with --force' \
     steady flag.yaml --threshold "$key=50000:120000" -o flag
 run steady flag.yaml --threshold "$key=50000:120000" -o flag -q --force
-check force_replaces_them test "$code" = 0
-
-# ---- what cannot be found, and what was found before
-
-refused stable_at_both_ends 1 'no threshold between the ends: the state is stable at both' \
+check force_replaces_it test "$code" = 0
+refused stable_at_both_ends 1 'no threshold between the ends: the state is stable at both; ' \
     steady flag.yaml --threshold "$key=110000:120000" -o both -q
-check its_message_says_both grep -qE 'growth over .*: at 110000: -.* s-1, .*at 120000: -.* s-1 [(]both/study.nc[)]' err
-check and_the_file_has_both test -s both/study.nc -a -s both/member-0001.nc
-refused no_effect 1 'the key has no effect' steady flag.yaml --threshold 'time.end=1:2' -o none -q
-refused contact_on_the_way 1 'found so far, largest multiplier over fish[*].motion.heave: at 0.1: ' \
-    steady plate.yaml --threshold 'fish[*].motion.heave=0.1:0.8' -o way
-check its_steps_are_halved test "$(grep -c 'no steady state, the step is halved' err)" -ge 2
+check its_message_says_how_far_it_came grep -qE 'up to .* = 120000 with the growth -.* s-1: both/study.nc$' err
+check and_the_file_has_the_states test -s both/study.nc -a -s both/state-001.nc
+refused no_effect 1 'the key has no effect' steady flag.yaml --threshold 'solver.rtol=1e-5:1e-6' -o none -q
+refused contact_on_the_way 1 'with the largest multiplier 0.' steady plate.yaml --threshold 'fish[*].motion.heave=0.3:0.8' -o way
+check its_steps_are_halved test "$(grep -c 'the step is halved' err)" -ge 2
 check and_are_in_the_file test -s way/study.nc
 run_until INT 'test -s stopped/study.nc' steady plate.yaml --threshold 'fish[*].motion.heave=0.1:0.2' -o stopped
 check a_signal_stops_it test "$code" = 75
-check its_message_has_the_remedy has err 'repeat the command to continue'
+check its_message_has_the_remedy has err '--from stopped/state-000.nc goes on from the last state'
 
 # ---- wrong use
 

@@ -655,7 +655,7 @@ class Programs(unittest.TestCase):
                 state = shoal.steady(flag, {"fish[*].nodes": 9, key: found.value + side * 3 * found.bar}, overwrite=True)
                 self.assertEqual(state.is_stable, side > 0)
             self.assertRegex(str(found), r"^fish\[\*\]\.body\.modulus = \d+.* \N{PLUS-MINUS SIGN} .*: unstable below it \(flutter\)$")
-            with self.assertRaisesRegex(shoal.SolverError, "(?s)stable at both.*found so far"):
+            with self.assertRaisesRegex(shoal.SolverError, "stable at both; .* steady states were found"):
                 shoal.threshold(flag, key, 9.5e4, 1e5, path="none")
             with self.assertRaisesRegex(shoal.CaseError, "two different numbers"):
                 shoal.threshold(flag, key, 1e5, 1e5)

@@ -63,40 +63,13 @@ TEST(followers_keep_their_places_in_the_frame_of_the_first_fish) {
     fish[0].motion.prescribed = fish[1].motion.prescribed = PRESCRIBED_NONE;
     const struct school_parameters school = {.n_fish = N_FISH, .fish = fish};
     struct fish_parameters *found;
-    school_ok(steady_start_read(test_arena(), path, NULL, 0, &school, &found));
+    school_ok(steady_start_read(test_arena(), path, &school, &found));
     NEAR_ARRAY(2, found[0].start_position, ((double[]){1, 2}), 0, 0);
     NEAR_ARRAY(2, found[1].start_position, ((double[]){3, 3}), 1e-14, 0);
     NEAR(found[0].start_speed, 1.5, 0, 0);
     NEAR(found[1].start_speed, 1.6, 0, 0);
     NEAR(found[0].motion.speed, 1.5, 0, 0);
     NEAR(found[1].motion.speed, 1.6, 0, 0);
-}
-
-TEST(a_start_is_extrapolated_from_two_states) {
-    char before[64];
-    snprintf(before, sizeof before, "%s.before", path);
-    double nodes[N_FISH * N_NODES * 2] = {0};
-    nodes[2 * N_NODES] = -4;
-    put_state(N_FISH, 0, (double[]){1.5, 1.6}, nodes);
-    assert_int_equal(rename(path, before), 0);
-    nodes[2 * N_NODES] = -5;
-    nodes[2 * N_NODES + 1] = 0.25;
-    put_state(N_FISH, 0, (double[]){1.7, 1.7}, nodes);
-
-    // half as far again
-    struct fish_parameters fish[N_FISH] = {{.start_position = {1, 2}}};
-    fish[0].motion.prescribed = fish[1].motion.prescribed = PRESCRIBED_NONE;
-    const struct school_parameters school = {.n_fish = N_FISH, .fish = fish};
-    struct fish_parameters *found;
-    school_ok(steady_start_read(test_arena(), path, before, 0.5, &school, &found));
-    NEAR_ARRAY(2, found[0].start_position, ((double[]){1, 2}), 0, 0);
-    NEAR_ARRAY(2, found[1].start_position, ((double[]){-4.5, 2.375}), 1e-14, 0);
-    NEAR(found[0].start_speed, 1.8, 1e-14, 0);
-    NEAR(found[1].start_speed, 1.75, 1e-14, 0);
-    NEAR(found[0].motion.speed, 1.8, 1e-14, 0);
-    unlink(before);
-    assert_int_equal(steady_start_read(test_arena(), path, before, 0.5, &school, &found), STATUS_FILE);
-    assert_null(found);
 }
 
 // an arc of a body that is twice as long and points elsewhere, as an arc behind the prescribed first edge
@@ -128,7 +101,7 @@ TEST(a_file_of_other_bodies_is_refused) {
     put_state(1, 0, (double[]){1}, nodes);
     struct fish_parameters fish[N_FISH] = {{.start_heading = 0}}, *found;
     const struct school_parameters school = {.n_fish = N_FISH, .fish = fish};
-    assert_int_equal(steady_start_read(test_arena(), path, NULL, 0, &school, &found), STATUS_FILE);
+    assert_int_equal(steady_start_read(test_arena(), path, &school, &found), STATUS_FILE);
     assert_null(found);
     assert_non_null(strstr(status_message(), "does not contain a steady state of 2 fish"));
 
