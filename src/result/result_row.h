@@ -27,7 +27,7 @@ static inline const char *steady_verdict(double multiplier, double error) {
 struct steady_fish {
     double speed;      /* of the centre of mass through the water, m s-1 */
     double turn;       /* of the heading in a beat, degree */
-    double place[2];   /* of the centre of mass relative to the first fish: ahead and to the left, m */
+    double place[2];   /* mean of the centre of mass relative to the first fish: ahead and to the left, m */
     double force[2];   /* of the fluid on the body, N */
     double thrust;     /* of the fluid on the body, along the direction of travel, N */
     double drag, lift; /* along the oncoming stream, and to the left of the stream, N; without a beat only, */

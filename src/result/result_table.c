@@ -129,7 +129,7 @@ const struct result_variable result_table[] = {
     {"steady_turn",           {FISH},                 RESULT_REAL,    "degree", IN_STEADY_FISH(turn),
      .long_name = "change of the heading in a beat"},
     {"steady_place",          {FISH, XY},             RESULT_REAL,    "m",      IN_STEADY_FISH(place),
-     .long_name = "centre of mass relative to the first fish: ahead, and to the left"},
+     .long_name = "mean of the centre of mass relative to the first fish over the last beat: ahead, and to the left"},
     {"steady_force",          {FISH, XY},             RESULT_REAL,    "N",      IN_STEADY_FISH(force),
      .long_name = "force of the fluid on the body"},
     {"steady_thrust",         {FISH},                 RESULT_REAL,    "N",      IN_STEADY_FISH(thrust),

@@ -75,10 +75,25 @@ enum status steady_map_create(struct steady_map *map, struct simulation *simulat
 // ---- one beat
 
 // trapezoidal rule over the events of a beat: half weight for both ends
-static void add_event(struct steady_map *map, double share) {
-    for (int f = 0; f < map->simulation->school->n_fish; f++) {
-        const struct diagnostics_fish *const now = &map->simulation->diagnostics->fish[f];
+static void add_event(struct steady_map *map, long event) {
+    const struct simulation *const simulation = map->simulation;
+    const struct school *const school = simulation->school;
+    const double share = (event % map->events == 0 ? 0.5 : 1) / (double)map->events;
+    struct rigid axes = rigid_of(&school->fish[0], simulation->state->y);
+    axes.heading = map->before[0].turn * (double)event / (double)map->events;
+
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct diagnostics_fish *const now = &simulation->diagnostics->fish[f];
         struct steady_beat *const sum = &map->last[f];
+
+        sum->heading += share * state_recall(&simulation->state->history[f], 0)->heading;
+
+        // where another fish is, in axes that turn with the path of the first fish but do not yaw with it
+        const struct rigid other = rigid_of(&school->fish[f], simulation->state->y);
+        double place[2];
+        rigid_relative_place(&axes, &other, place);
+        for (int i = 0; i < 2 && f > 0; i++) sum->place[i] += share * place[i];
+
         double force[2];
         diagnostics_fluid_force(now->resistive_force, now->reactive_force, &now->pressure, force);
         for (int i = 0; i < 2; i++) sum->force[i] += share * force[i];
@@ -94,14 +109,13 @@ enum status steady_map_beat(struct steady_map *map, enum status (*row)(void *dat
     map->before = map->last;
     map->last = oldest;
     memset(map->last, 0, (size_t)map->simulation->school->n_fish * sizeof *map->last);
-    const double share = 1 / (double)map->events;
     simulate_measure(map->simulation);
-    add_event(map, share / 2);
+    add_event(map, 0);
 
     for (long i = 1; i <= map->events; i++) {
         TRY(simulate_step(map->simulation));
         simulate_measure(map->simulation);
-        add_event(map, i < map->events ? share : share / 2);
+        add_event(map, i);
         if (row) TRY(row(data));
     }
 
@@ -114,7 +128,12 @@ enum status steady_map_beat(struct steady_map *map, enum status (*row)(void *dat
         beat->speed = map->simulation->diagnostics->fish[f].speed;
         beat->turn = created->heading - old->heading;
         const struct steady_unknown place[] = {{f, STEADY_AHEAD}, {f, STEADY_ASIDE}};
-        steady_map_read(map, 2, place, beat->place);
+        steady_map_read(map, 2, place, beat->end_place);
+
+        // turn the axes of add_event, which are those of the ground at the begin of the beat, to the mean heading
+        const struct rigid axes = {.heading = map->last[0].heading - map->before[0].turn / 2},
+                           mean = {.place = {beat->place[0], beat->place[1]}};
+        if (f > 0) rigid_relative_place(&axes, &mean, beat->place);
 
         beat->actuation = (created->work[WORK_ACTUATION] - old->work[WORK_ACTUATION]) / map->period;
         beat->damping = (created->work[WORK_DAMPING] - old->work[WORK_DAMPING]) / map->period;
@@ -141,7 +160,8 @@ double steady_map_residual(const struct steady_map *map) {
         const bool circles = fabs(school->fish[f].control.bias) > 0;
         residual = larger(residual, relative_change(now->turn, before->turn, (circles ? 1 : 10) * 2 * M_PI));
         for (int i = 0; i < 2 && map->is_formation; i++) {
-            residual = larger(residual, relative_change(now->place[i], before->place[i], school->fish[f].length));
+            residual =
+                larger(residual, relative_change(now->end_place[i], before->end_place[i], school->fish[f].length));
         }
         if (steady_map_freedom(&school->fish[f]) != STEADY_HELD) continue;
         residual = larger(residual, relative_change(now->thrust, before->thrust, now->rms_thrust));

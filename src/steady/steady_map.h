@@ -43,7 +43,9 @@ enum steady_freedom steady_map_freedom(const struct fish *fish);
 /* Means and end values of one beat. */
 struct steady_beat {
     double speed;                              /* m s-1 */
-    double place[2];                           /* at the end: ahead and to the left of the first fish, m */
+    double place[2];                           /* centre of mass ahead and to the left of the first fish, m */
+    double end_place[2];                       /* the same at the end of the beat, along the heading at the end, m */
+    double heading;                            /* mean, rad */
     double turn;                               /* rad */
     double force[2], thrust;                   /* means, N */
     double rms_thrust;                         /* N */

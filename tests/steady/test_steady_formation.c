@@ -47,14 +47,14 @@ TEST(between_two_stable_places_is_one_that_the_follower_leaves) {
     // after a displacement to either side the follower moves to the next stable place, by at least one length
     struct state *kept = NULL;
     steady_map_save(setup.simulation->arena, setup.simulation, &kept);
-    const double place = setup.problem.map.last[1].place[0];
+    const double place = setup.problem.map.last[1].end_place[0];
     for (int side = -1; side <= 1; side += 2) {
         const struct steady_unknown ahead = {1, STEADY_AHEAD};
         const double add = side * 0.1;
         school_ok(steady_map_return(setup.simulation, kept));
         school_ok(steady_map_add(&setup.problem.map, 1, &ahead, &add));
         steady_setup_beats(&setup, 5);
-        ABOVE(side * (setup.problem.map.last[1].place[0] - place), 1);
+        ABOVE(side * (setup.problem.map.last[1].end_place[0] - place), 1);
     }
 }
 
@@ -86,6 +86,12 @@ TEST(a_place_that_is_held_is_one_steady_state) {
     NEAR(-away[0], 0.5 * c - 0.6 * s, 1e-3, 0);
     NEAR(-away[1], 0.5 * s + 0.6 * c, 4e-3, 0);
     ABOVE(fabs(setup.simulation->state->control[1].drive), 1e-3);
+
+    // so is that of the result, whatever the yaw of the leader at the end of the beat
+    const struct steady_beat *const last = &setup.problem.map.last[1];
+    NEAR_ARRAY(2, last->place, ((double[]){-0.5, -0.6}), 4e-3, 0);
+    NEAR(hypot(last->place[0], last->place[1]), hypot(away[0], away[1]), 1e-5, 0);
+    ABOVE(fabs(last->end_place[1] - last->place[1]), 0.005);
 
     // a change by the search moves what the law has seen of the leader too: the school turns about the first fish, and
     // the second one moves along the old heading of the first

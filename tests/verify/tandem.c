@@ -58,10 +58,10 @@ struct found {
 
 static double wander(struct steady_problem *problem) {
     const struct steady_unknown ahead = {1, STEADY_AHEAD};
-    const double place = problem->map.last[1].place[0], add = 0.1;
+    const double place = problem->map.last[1].end_place[0], add = 0.1;
     verify_ok(steady_map_add(&problem->map, 1, &ahead, &add));
     for (int i = 0; i < 30; i++) verify_ok(steady_map_beat(&problem->map, NULL, NULL));
-    return problem->map.last[1].place[0] - place;
+    return problem->map.last[1].end_place[0] - place;
 }
 
 // growth of the distance of two followers, on either side of the equilibrium, from the second beat to the third
@@ -74,7 +74,7 @@ static double growth(struct steady_problem *problem, const struct state *kept) {
         verify_ok(steady_map_add(&problem->map, 1, &ahead, &add));
         for (int beat = 1; beat <= 3; beat++) {
             verify_ok(steady_map_beat(&problem->map, NULL, NULL));
-            if (beat > 1) apart[beat - 2] += side * problem->map.last[1].place[0];
+            if (beat > 1) apart[beat - 2] += side * problem->map.last[1].end_place[0];
         }
     }
     return apart[1] / apart[0];
