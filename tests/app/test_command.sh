@@ -20,7 +20,7 @@ status_of() { ncdump -h "$1" 2>/dev/null | sed -n 's/.*:run_status = "\(.*\)" ;/
 rows_of() { ncdump -h "$1" 2>/dev/null | sed -n 's/.*time = UNLIMITED ; \/\/ (\([0-9]*\) currently).*/\1/p'; }
 has_rows() { (($(rows_of "$1") >= $2)); }
 status_is() { [[ $(status_of "$1") == "$2" ]]; }
-readable() { timeout "$time_limit" ncdump -v time,heading,wake_count "$1" >/dev/null; }
+readable() { ncdump -v time,heading,wake_count "$1" >/dev/null; }
 # the name of the case's result and of nothing else: no half-made file is left behind
 only_files() { [[ $(find "$1" -type f -printf '%f\n' | sort | tr '\n' ' ') == "$2" ]]; }
 
@@ -405,12 +405,12 @@ spread() {
     local processor
     processor=$(taskset -cp $$ | sed 's/.*: \([0-9]*\).*/\1/')
     code=0
-    taskset -c "$processor" timeout "$time_limit" "$program" "${spread[@]}" --threads 2 -o shared.nc \
+    taskset -c "$processor" "$program" "${spread[@]}" --threads 2 -o shared.nc \
         >out 2>err </dev/null || code=$?
     check "two threads on one processor: exit 0" ended 0
     check "two threads on one processor: the same bits" same_bits one.nc shared.nc
     code=0
-    OMP_WAIT_POLICY=passive OMP_PROC_BIND=true timeout "$time_limit" "$program" "${spread[@]}" --threads 2 -o bound.nc \
+    OMP_WAIT_POLICY=passive OMP_PROC_BIND=true "$program" "${spread[@]}" --threads 2 -o bound.nc \
         >out 2>err </dev/null || code=$?
     check "threads where the environment says: exit 0" ended 0
     check "threads where the environment says: the same bits" same_bits one.nc bound.nc
@@ -507,7 +507,7 @@ limited() {  # ulimit option, value of the option, arguments
     local option=$1 value=$2
     shift 2
     code=0
-    (ulimit "$option" "$value" && exec timeout "$time_limit" "$program" "$@") >out 2>err </dev/null || code=$?
+    (ulimit "$option" "$value" && exec "$program" "$@") >out 2>err </dev/null || code=$?
 }
 
 limits() {
@@ -540,18 +540,18 @@ limits() {
     check "file too large: steady: the reason, nothing is left, no row is promised" \
         eval 'says "at t = " && test ! -e cut.nc && ! has err "rows before are good"'
     refused "field of a study" 4 "the file of a study: give the file of one run" field pair-study/study.nc -o cut.nc
-    (ulimit -f 0 && exec timeout "$time_limit" "$program" new cut.yaml) 2>&1 | cat >err
+    (ulimit -f 0 && exec "$program" new cut.yaml) 2>&1 | cat >err
     check "file too large: new: the reason" says "File too large"
     check "file too large: new: nothing is left" test ! -e cut.yaml
 
     code=0
-    timeout "$time_limit" "$program" --help >/dev/full 2>err || code=$?
+    "$program" --help >/dev/full 2>err || code=$?
     check "standard output full: exit 4" ended 4
     code=0
-    timeout "$time_limit" "$program" error "$demo" --of speed --no-confirm --set time.end=0.1 -o full >/dev/full 2>err || code=$?
+    "$program" error "$demo" --of speed --no-confirm --set time.end=0.1 -o full >/dev/full 2>err || code=$?
     check "error, standard output full: exit 4 and the table of the study" eval 'ended 4 && has err "cannot write to standard output" && test -s full/study.nc'
     code=0
-    timeout "$time_limit" "$program" keys >&- 2>err || code=$?
+    "$program" keys >&- 2>err || code=$?
     check "standard output closed: exit 4" ended 4
 
     if grep -q __asan_init "$program"; then
@@ -581,7 +581,7 @@ history() {
     history_of 'my file.nc' >command.sh
     check "history ends with the arguments as given" grep -qF -- "-o 'my file.nc'" command.sh
     mv 'my file.nc' before.nc
-    check "a shell repeats the command of the history" timeout "$time_limit" bash command.sh
+    check "a shell repeats the command of the history" bash command.sh
     check "the repeated command makes the same file" test -f 'my file.nc'
     check "with the same case" cmp <(history_of before.nc) <(history_of 'my file.nc')
 
