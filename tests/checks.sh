@@ -12,8 +12,10 @@ program=$(realpath "${1:?usage: $0 PROGRAM}")
 root=$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")
 folder=$(mktemp -d)
 pid=
+python=
 leave() {
     [[ -z $pid ]] || kill -KILL "$pid" 2>/dev/null
+    [[ -z $python ]] || { kill "$python" && wait "$python"; } 2>/dev/null
     chmod -R u+rwx "$folder"
     rm -rf "$folder"
 }
@@ -111,6 +113,25 @@ run_until() {  # signal, command, arguments...
     code=0
     wait "$pid" || code=$?
     pid=
+}
+
+# Start the process in which `python` runs the scripts of this test: loading numpy and netCDF4 takes longer than all of them.
+start_python() {
+    mkfifo "$folder/python.asked" "$folder/python.answered"
+    exec {asked}<>"$folder/python.asked" {answered}<>"$folder/python.answered"
+    OPENBLAS_NUM_THREADS=1 /usr/bin/python3 "$root/tests/run_scripts.py" <"$folder/python.asked" >"$folder/python.answered" 2>&1 &
+    python=$!
+}
+
+# Run a script of Python with arguments: prints what the script prints, and has its exit code.
+python() {
+    local answer output
+    printf '%s\0' "$#" "$PWD" "$@" >&"$asked"
+    read -rt "$time_limit" -u "$answered" answer
+    [[ $answer =~ ^[0-9]+$ ]] || { echo "$answer"; return 1; }
+    IFS= read -rd '' output <"$folder/python.printed"
+    printf '%s' "$output"
+    return "$answer"
 }
 
 # The last line of a test, and the exit code of the test.
