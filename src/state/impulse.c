@@ -174,7 +174,7 @@ struct impulse_moments impulse_thin_wake(const struct school *school, struct sta
     wake_remove_old(wake, school, t);
     stretch_find_old(wake, fish, school);
     stretch_drop(wake, fish, school);
-    stretch_restore(wake, fish, school);
+    stretch_restore(wake, fish, school, state->y);
     const struct impulse_moments after = impulse_of_wake(wake, school, t, 0);
     return (struct impulse_moments){.circulation = before.circulation - after.circulation,
                                     .x = before.x - after.x,

@@ -8,9 +8,12 @@
 // the least and largest ratio of the durations of neighbours for a form of more than two markers
 static const double least_ratio = 0.2, largest_ratio = 8;
 
-// the least length of a stretch that gets its middle marker back, over the largest length of two that lose it;
-// above 1, so that no marker comes and goes
-static const double restored_over_dropped = 1.1;
+// the least length of a stretch that gets its middle marker back, over the largest length of two that lose it, near
+// bodies and elsewhere; above 1, so that no marker comes and goes
+static const double restored_over_dropped[] = {1.1, 1.5};
+
+// the largest distance of a stretch near a body from its middle node, in lengths of the body: one from its ends
+static const double near_body = 1.5;
 
 // times are multiples of the interval, but for rounding
 static const double time_rounding = 1e-6;
@@ -204,15 +207,30 @@ void stretch_drop(struct wake *wake, const struct fish *fish, const struct schoo
     }
 }
 
-void stretch_restore(struct wake *wake, const struct fish *fish, const struct school *school) {
-    const double longest = restored_over_dropped * most_spacing(fish, school);
+// whether the middle of stretch j is near a body
+static bool is_near_body(const struct wake *wake, const struct school *school, const double *y, int j) {
+    const double x = (wake->x[j] + wake->x[j + 1]) / 2, across = (wake->y[j] + wake->y[j + 1]) / 2;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        const int middle = fish->n_nodes / 2;
+        const double away[2] = {y[fish->at.x + middle] - x, y[fish->at.y + middle] - across};
+        const double reach = near_body * fish->length;
+        if (away[0] * away[0] + away[1] * away[1] < reach * reach) return true;
+    }
+    return false;
+}
+
+void stretch_restore(struct wake *wake, const struct fish *fish, const struct school *school, const double *y) {
+    const double most = most_spacing(fish, school);
     struct stretch_form form;
     double along[2];
     for (int j = 1; j < wake->n_old; j++) {
         // an even number of intervals: a marker was dropped in the middle
         const double duration = (wake->birth[j + 1] - wake->birth[j]) / school->interval;
         if (duration < 1.5 || fabs(fmod(round(duration), 2)) > 0.5) continue;
-        if (!(stretch_along(wake, j, along) > longest)) continue;
+        const double length = stretch_along(wake, j, along);
+        if (!(length > restored_over_dropped[0] * most)) continue;
+        if (!(length > restored_over_dropped[1] * most) && !is_near_body(wake, school, y, j)) continue;
         stretch_set_form(&form, wake, school, j);
         if (form.n < STRETCH_MARKERS) continue;
 

@@ -30,9 +30,10 @@ const struct stretch_forms *stretch_forms_create(struct arena *arena);
 void stretch_set_form(struct stretch_form *form, const struct wake *wake, const struct school *school, int j);
 
 /* At an event, with the newest marker at the tail: count the stretches that have become old; drop markers of the old
- * part; put a marker back into the middle of every stretch there that has grown too long without it. */
+ * part; put a marker back into the middle of every stretch there that has grown too long without it, the sooner if a
+ * body is near. y: the unknowns. */
 void stretch_find_old(struct wake *wake, const struct fish *fish, const struct school *school);
 void stretch_drop(struct wake *wake, const struct fish *fish, const struct school *school);
-void stretch_restore(struct wake *wake, const struct fish *fish, const struct school *school);
+void stretch_restore(struct wake *wake, const struct fish *fish, const struct school *school, const double *y);
 
 #endif
