@@ -245,9 +245,10 @@ class Threshold(NamedTuple):
 
     key: str
     value: float
-    bar: float  #: error of the value: the sum of by_error and by_secant
+    bar: float  #: error of the value: the sum of the next three
     by_error: float  #: error of the multiplier over slope
     by_secant: float  #: length of the last secant
+    by_state: float  #: what a tenth of steady.tolerance changes at the nearest state
     slope: float  #: of the modulus of the largest multiplier over the key, without a beat of the growth rate, s-1
     unstable: str  #: "above" or "below"
     kind: str  #: "fold", "multiplier +1", "period doubling", "Neimark-Sacker"; without a beat "divergence", "flutter"

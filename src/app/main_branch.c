@@ -85,8 +85,8 @@ static void print_threshold(struct arena *arena, const struct branch *branch, co
                 found->nearest->label);
     }
     if (found->by_error > 0) {
-        fprintf(stream, "  the bar is %.2g by the error of the multiplier and %.2g by the secant\n", found->by_error,
-                found->by_secant);
+        fprintf(stream, "  the bar is %.2g by the error of the multiplier, %.2g by the secant and %.2g by the state\n",
+                found->by_error, found->by_secant, found->by_state);
     } else {
         fprintf(stream, "  the bar is that of the secant only: growth rates have no error\n");
     }
@@ -130,8 +130,9 @@ static void print_table(struct arena *arena, const struct branch *branch, const 
 }
 
 static void print_json_threshold(const struct branch_threshold *found, FILE *stream) {
-    fprintf(stream, "\"threshold\": %.12g, \"bar\": %.3g, \"by_error\": %.3g, \"by_secant\": %.3g,\n  ", found->value,
-            found->bar, found->by_error, found->by_secant);
+    fprintf(stream,
+            "\"threshold\": %.12g, \"bar\": %.6g, \"by_error\": %.6g, \"by_secant\": %.6g, \"by_state\": %.6g,\n  ",
+            found->value, found->bar, found->by_error, found->by_secant, found->by_state);
     fprintf(stream, "\"slope\": %.6g, \"unstable\": \"%s\", ", found->slope,
             found->is_unstable_above ? "above" : "below");
     text_print_member(stream, "", "kind", found->nearest->label);

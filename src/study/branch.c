@@ -304,22 +304,24 @@ static enum status add_point(struct walk *walk, int at, const double *x, double 
 
 // ---- between the points
 
-/* The number of the first of the points, two or three, that are nearest to the way from number at to the next. */
-static int parabola_at(const struct branch *branch, int at) {
-    return at < branch->n_points - 3 ? at : branch->n_points > 3 ? branch->n_points - 3 : 0;
-}
-
-/* A coordinate on the parabola through three points from number first on, or on the line through two. */
-static double parabola(const struct branch *branch, int first, double arclength, int coordinate) {
+/* A coordinate at an arclength on the parabola through the three points of the branch that are nearest to it, or on the
+ * line through two. */
+static double parabola(const struct branch *branch, double arclength, int coordinate) {
+    int first = 0;
     const int n = branch->n_points < 3 ? 2 : 3;
+    while (first + n < branch->n_points &&
+           fabs(branch->point[first + n]->arclength - arclength) < fabs(branch->point[first]->arclength - arclength)) {
+        first++;
+    }
     double value = 0;
     for (int i = first; i < first + n; i++) {
+        const struct branch_point *const point = branch->point[i];
         double part = 1;
         for (int k = first; k < first + n; k++) {
             const double from = branch->point[k]->arclength;
-            if (k != i) part *= (arclength - from) / (branch->point[i]->arclength - from);
+            if (k != i) part *= (arclength - from) / (point->arclength - from);
         }
-        value += part * branch->point[i]->x[coordinate];
+        value += part * point->x[coordinate];
     }
     return value;
 }
@@ -329,13 +331,13 @@ static double parabola(const struct branch *branch, int first, double arclength,
 static enum status add_between(struct walk *walk, int at, double arclength) {
     ARENA(scratch, walk->arena, "a point between");
     const struct branch *const branch = walk->branch;
-    const int size = walk->n + 1, first = parabola_at(branch, at);
+    const int size = walk->n + 1;
     const struct branch_point *const a = branch->point[at], *const b = branch->point[at + 1];
     double *x, *side;
     NEW(scratch, x, size);
     NEW(scratch, side, size);
     for (int j = 0; j < size; j++) {
-        x[j] = parabola(branch, first, arclength, j);
+        x[j] = parabola(branch, arclength, j);
         side[j] = (b->x[j] - a->x[j]) / distance(size, a->x, b->x);
     }
     TRY(correct(walk, x, side));
@@ -409,6 +411,28 @@ static bool turns_near(const struct walk *walk, int at) {
     return false;
 }
 
+/* How far the key of a point moves if the point is corrected to a tenth of the tolerance; where noise prevents this,
+ * the tolerance. */
+static enum status find_error_of_key(struct walk *walk, int at, double *error) {
+    const struct branch *const branch = walk->branch;
+    const int size = walk->n + 1, k = walk->n;
+    const struct branch_point *const a = branch->point[at > 0 ? at - 1 : 0], *const point = branch->point[at];
+    const struct branch_point *const b = branch->point[at + 1 < branch->n_points ? at + 1 : at];
+    ARENA(scratch, walk->arena, "a finer correction");
+    double *x, *side;
+    NEW(scratch, x, size);
+    NEW(scratch, side, size);
+    for (int j = 0; j < size; j++) side[j] = (b->x[j] - a->x[j]) / distance(size, a->x, b->x);
+    memcpy(x, point->x, (size_t)size * sizeof *x);
+    const double tolerance = walk->tolerance;
+    walk->tolerance = tolerance / 10;
+    const enum status status = correct(walk, x, side);
+    walk->tolerance = tolerance;
+    const bool is_coarse = status == STATUS_SOLVER;
+    *error = fabs(walk->options->to - walk->options->from) * (is_coarse ? tolerance : fabs(x[k] - point->x[k]));
+    return is_coarse ? STATUS_OK : status;
+}
+
 /* Locate the change of stability between points number at and at + 1. If this fails with STATUS_SOLVER or
  * STATUS_CONTACT, the nearer of the points found so far has the label, and the threshold no bar. */
 static enum status locate_threshold(struct walk *walk, int at) {
@@ -442,26 +466,26 @@ static enum status locate_threshold(struct walk *walk, int at) {
         if (next >= 0 && next < branch->n_points) unstable = branch->point[next];
     }
 
-    // from the arclength to the key, which turns at a fold: along the parabola through the nearest points
-    const int first = parabola_at(branch, nearest > 0 ? nearest - 1 : 0), k = walk->n;
+    const int k = walk->n;
     const double way = walk->options->to - walk->options->from;
     struct branch_threshold threshold = {
         .nearest = point, .value = point->value, .bar = NAN, .period = unstable->period};
     point->label = turns_near(walk, nearest) && unstable->period <= 0 ? fold : kind_of(branch, unstable);
     if (status == STATUS_OK) {
-        const double parts[] = {found.by_error, found.by_secant};
+        // from the arclength to the key, which turns at a fold
+        const double parts[] = {found.by_error, found.by_secant}, key = parabola(branch, found.at, k);
         double bars[2];
-        const double key = parabola(branch, first, found.at, k);
         for (int i = 0; i < 2; i++) {
-            const double less = parabola(branch, first, found.at - parts[i], k) - key;
-            const double more = parabola(branch, first, found.at + parts[i], k) - key;
+            const double less = parabola(branch, found.at - parts[i], k) - key;
+            const double more = parabola(branch, found.at + parts[i], k) - key;
             bars[i] = fabs(way) * larger(fabs(less), fabs(more));
         }
-        const double rate = (parabola(branch, first, to, k) - parabola(branch, first, from, k)) / (to - from) * way;
+        const double rate = (parabola(branch, to, k) - parabola(branch, from, k)) / (to - from) * way;
         threshold.value = walk->options->from + key * way;
         threshold.by_error = bars[0];
         threshold.by_secant = bars[1];
-        threshold.bar = bars[0] + bars[1];
+        TRY(find_error_of_key(walk, nearest, &threshold.by_state));
+        threshold.bar = threshold.by_error + threshold.by_secant + threshold.by_state;
         threshold.slope = found.slope / rate;
     }
     threshold.is_fold = point->label == fold;

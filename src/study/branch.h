@@ -50,9 +50,10 @@ struct branch_point {
 struct branch_threshold {
     const struct branch_point *nearest; /* the point with this label */
     double value;                       /* of the key where the excess is 0 */
-    double bar;                         /* of the value: the sum of the next two; NaN: the errors hide it */
+    double bar;                         /* of the value: the sum of the next three; NaN: the errors hide it */
     double by_error;                    /* error of the excess over the slope */
     double by_secant;                   /* length of the last secant */
+    double by_state;                    /* what a tenth of steady.tolerance changes at the nearest point */
     double slope;                       /* of the excess over the key */
     double period;                      /* of the nearest unstable point */
     bool is_fold;                       /* the key turns back there */

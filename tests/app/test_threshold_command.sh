@@ -137,6 +137,7 @@ end
 run steady follow.yaml --threshold 'fish[1].motion.heave=0.083:0.07' -o fold
 check a_fold_is_named has out 'a fold: the steady states of this branch end there'
 check it_has_a_bar grep -qE 'heave = 0[.]078[0-9]* \+- 0[.]0000' out
+check which_has_the_scatter_of_the_states grep -qE 'by the secant and [1-9].* by the state' out
 
 # ---- a result is kept, and what cannot be found leaves what was found before
 

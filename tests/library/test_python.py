@@ -649,7 +649,7 @@ class Programs(unittest.TestCase):
             warnings.simplefilter("ignore")
             found = shoal.threshold(flag, key, 5e4, 1e5, {"fish[*].nodes": 9}, path="flutter")
             self.assertEqual((found.kind, found.unstable, found.key), ("flutter", "below", key))
-            self.assertEqual(found.bar, found.by_error + found.by_secant)
+            self.assertEqual(found.bar, found.by_error + found.by_secant + found.by_state)
             self.assertTrue(5e4 < float(found) < 1e5 and 0 < found.bar < 10, found)
             for side in (-1, 1):
                 state = shoal.steady(flag, {"fish[*].nodes": 9, key: found.value + side * 3 * found.bar}, overwrite=True)
