@@ -5,6 +5,7 @@
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 
+start_python
 cases=$root/cases
 readonly demo="$cases/demo.yaml" diamond="$cases/diamond.yaml"
 export short="time.end=0.3"
@@ -12,7 +13,7 @@ export short="time.end=0.3"
 # true if err has one line, the warning of a run shorter than two beats
 only_few_beats() { [[ $(wc -l <err) -eq 1 ]] && grep -q '^shoal: warning: the run has [0-9.]* beats of fish' err; }
 
-says() { grep -qF -- "$1" err; }
+says() { has err "$1"; }
 ended() { ((code == $1)); }
 silent() { [[ ! -s out && ! -s err ]]; }
 one_line() { (($(wc -l <err) == 1)); }
@@ -153,10 +154,18 @@ output_paths() {
 run = json.load(open("out"))
 got = re.fullmatch(r"t +0.300 s +100 % +0 s left .* x real time +(.*) steps/event +(\d+) vortices", open("last").read().strip())
 assert abs(float(got[1]) - run["steps"] * run["shedding_interval"] / 0.3) < 0.06 and int(got[2]) == run["wake_count"][0]'
-    run run "$demo" --set time.end=120 -o log.nc --force
+    # a run that pauses for three seconds near its begin has seconds left
+    "$program" run "$demo" --set time.end=20 -o log.nc --force >out 2>err </dev/null &
+    pid=$!
+    wait_for has err ' 10 %  '
+    kill -STOP "$pid"
+    pause 3
+    kill -CONT "$pid"
+    wait "$pid"
+    pid=
     # the rest of the run at the speed so far, which is printed with three digits
     check "the seconds left are the time left over the speed" awk '
-        / s left / { left = (120 - $2) / $9; n += left > 1.5; if (($6 - left) ^ 2 > (0.6 + left / 50) ^ 2) exit wrong = 1 }
+        / s left / { left = (20 - $2) / $9; n += left > 1.5; if (($6 - left) ^ 2 > (0.6 + left / 50) ^ 2) exit wrong = 1 }
         END { exit wrong || n == 0 }' err
 }
 
@@ -294,27 +303,7 @@ summaries() {
     cp out run.json
     run info other-study/study.nc --json
     cp out study.json
-    cat >summary.py <<'EOF'
-import json, netCDF4, numpy as np
-run, data = json.load(open("run.json")), netCDF4.Dataset("summary.nc")
-data.set_auto_mask(False)
-assert run["kind"] == "run" and run["status"] == "complete" and run["rows"] == len(data["time"]) and len(run["warnings"]) == 1
-assert run["warnings"][0].startswith("the run has 0.3 beats of fish: means and powers are not those of a cycle")
-assert run["fish"] == ["fish"] and run["case"] == "demo"
-for name, variable in data.variables.items():
-    if {"node", "edge", "joint", "sheet", "control", "vortex"} & set(variable.dimensions):
-        assert name not in run, name
-    elif variable.dtype != "S1":
-        values = variable[-1] if variable.dimensions[:1] == ("time",) else variable[...]
-        assert np.array_equal(np.array(run[name], float), np.array(values, float), equal_nan=True), name
-study, data = json.load(open("study.json")), netCDF4.Dataset("other-study/study.nc")
-assert study["kind"] == "study" and study["status"] == ["complete"] * 2
-assert study["fish_wave_amplitude"] == [0.3, 0.4] and {"speed", "nose", "steps", "fish_wave_amplitude"} <= {*study}
-for name in {*data.variables} & {*study}:
-    if data[name].dtype != "S1":
-        assert np.array_equal(np.array(study[name], float), np.ma.filled(data[name][...], np.nan), equal_nan=True), name
-EOF
-    check "info --json says what is in the file" /usr/bin/python3 summary.py
+    check "info --json says what is in the file" python "$root/tests/app/json_summary.py"
     run run "$demo" -q -o marked.nc --set "$short" --checkpoint-at 0.1
     refused "info --json of a checkpoint" 2 'is a checkpoint' info marked.ckpt --json
 }
@@ -326,64 +315,20 @@ progress() {
         skip "progress on a terminal" "no pseudo terminal: $(tail -n 1 no_terminal)"
         return
     fi
-    cat >terminal.py <<'EOF'
-"""Run a command in a terminal of some columns, and print what the terminal got."""
-import fcntl, os, pty, re, struct, sys, termios
-child, terminal = pty.fork()
-if child == 0:
-    fcntl.ioctl(2, termios.TIOCSWINSZ, struct.pack("HHHH", 24, int(sys.argv[1]), 0, 0))
-    os.execv(sys.argv[2], sys.argv[2:])
-got = b""
-while True:
-    try:
-        more = os.read(terminal, 4096)
-    except OSError:
-        break
-    if not more:
-        break
-    got += more
-os.waitpid(child, 0)
-lines = got.decode().replace("\x1b[K", "").replace("\r\n", "\n")
-progress = re.compile(r"t +[0-9.]+ s(?:  |$)|beat +[0-9]+|[0-9]+ of [0-9]+ members")
-drawn = [part for line in lines.split("\n") for part in line.split("\r") if progress.match(part)]
-assert drawn, lines  # a fast machine draws few
-assert max(map(len, drawn)) < int(sys.argv[1]), drawn
-assert max(map(len, drawn)) > int(sys.argv[1]) // 2, drawn
-# the time and the percentage take 19 columns: all but the last
-assert int(sys.argv[1]) != 20 or max(map(len, drawn)) == 19, drawn
-# one line, redrawn: no line of progress ends with a line feed
-assert not any(progress.match(line.split("\r")[-1]) for line in lines.split("\n")), lines
-# the first line of a study comes at once; a slow program first counts the members that it has estimated and checked
-done = [part for part in drawn if not re.search("members (estimated|checked)", part)]
-assert "members" not in done[0] or re.fullmatch("0 of [0-9]+ members done    0 %  0 s left  0 failed  1 running", done[0]), drawn
-EOF
-    check "a run draws one line within 60 columns" /usr/bin/python3 terminal.py 60 "$program" run "$demo" --force -o drawn.nc --set time.end=20
-    check "a run draws one line within 35 columns" /usr/bin/python3 terminal.py 35 "$program" run "$demo" --force -o drawn.nc --set time.end=20
-    check "and one within 20 columns" /usr/bin/python3 terminal.py 20 "$program" run "$demo" --force -o drawn.nc --set time.end=5
-    check "and less within 19 columns" /usr/bin/python3 terminal.py 19 "$program" run "$demo" --force -o drawn.nc --set time.end=5
+    check "a run draws one line within 60 columns" python "$root/tests/app/terminal.py" 60 "$program" run "$demo" --force -o drawn.nc --set time.end=8
+    check "a run draws one line within 35 columns" python "$root/tests/app/terminal.py" 35 "$program" run "$demo" --force -o drawn.nc --set time.end=8
+    check "and one within 20 columns" python "$root/tests/app/terminal.py" 20 "$program" run "$demo" --force -o drawn.nc --set time.end=4
+    check "and less within 19 columns" python "$root/tests/app/terminal.py" 19 "$program" run "$demo" --force -o drawn.nc --set time.end=4
     # shellcheck disable=SC2086 # words
     for words in 'study other.yaml -o drawn -j 1' 'error other.yaml --of speed -j 1 --set sweep=[]' 'compare other.yaml --methods rk4 --steps 5e-3 --set sweep=[]'; do
-        check "so does ${words%% *}" /usr/bin/python3 terminal.py 60 "$program" $words --force
+        check "so does ${words%% *}" python "$root/tests/app/terminal.py" 60 "$program" $words --force
     done
     printf '%s\n' 'format: 1' 'time: {end: 3, shedding_interval: 0.05, output_interval: 0.1}' \
-        'fish: [{name: a, force: pressure, pressure: {span: infinite}}]' >search.yaml
-    check "and a search" /usr/bin/python3 terminal.py 60 "$program" steady search.yaml --force
+        'fish: [{name: a, force: reactive, nodes: 17}]' >search.yaml
+    check "and a search" python "$root/tests/app/terminal.py" 60 "$program" steady search.yaml --force
 }
 
-# Two results hold the same bits in all variables but the wall clock.
-same_bits() {
-    /usr/bin/python3 - "$@" <<'EOF'
-import sys, netCDF4, numpy
-a, b = (netCDF4.Dataset(path) for path in sys.argv[1:])
-for name in a.variables:
-    if name != "wall_time":
-        first, second = (numpy.ma.getdata(f[name][...]) for f in (a, b))
-        if first.tobytes() != second.tobytes():
-            sys.exit(f"{name} differs")
-if set(a.variables) != set(b.variables):
-    sys.exit("other variables")
-EOF
-}
+same_bits() { python "$root/tests/run/same_result.py" "$@"; }
 
 repeats() {
     run run "$demo" -q --set time.end=0.5 -o first.nc
@@ -446,7 +391,7 @@ end_while_writing() {  # signal, part, command...
 
 signals() {
     local signal
-    printf '%s\n' 'format: 1' 'name: rows' 'time: {end: 100, shedding_interval: 0.01, output_interval: 0.01}' \
+    printf '%s\n' 'format: 1' 'name: rows' 'time: {end: 40, shedding_interval: 0.01, output_interval: 0.01}' \
         'fluid: {density: 0}' 'solver: {rtol: 1e-2}' \
         'fish: [{nodes: 41, force: reactive, motion: {prescribed: all, speed: 1}}]' >rows.yaml
     run run rows.yaml -q
@@ -536,7 +481,9 @@ limits() {
         check "file too large: $command: nothing is left" diff <(find . -type f ! -name check.out | sort) "$folder.files"
     done
     check "file too large: gather keeps study.nc" cmp pair-study/study.nc study.before
-    limited -f 150 steady "$demo" -q -o cut.nc
+    printf '%s\n' 'format: 1' 'time: {end: 1, shedding_interval: 0.1, output_interval: 0.1}' \
+        'steady: {tolerance: 1e-2, multipliers: false}' 'fish: [{force: reactive, nodes: 9, sheet_points: 17}]' >steady.yaml
+    limited -f 100 steady steady.yaml -q -o cut.nc
     check "file too large: steady: the reason, nothing is left, no row is promised" \
         eval 'says "at t = " && test ! -e cut.nc && ! has err "rows before are good"'
     refused "field of a study" 4 "the file of a study: give the file of one run" field pair-study/study.nc -o cut.nc
@@ -568,11 +515,7 @@ limits() {
 # ---- the attribute history
 
 # the history of a result, without the date
-history_of() { python3 -c 'import sys
-data = open(sys.argv[1], "rb").read()
-at = data.index(b"\0\0\0\0\0\0\0\x07history\0") + 16
-n = int.from_bytes(data[at + 4:at + 12], "big")
-sys.stdout.write(data[at + 12:at + 12 + n].decode().split(" ", 1)[1])' "$1"; }
+history_of() { python "$root/tests/value.py" "$1" history | cut -d ' ' -f 2-; }
 
 history() {
     mkdir "a folder" && cp "$demo" "a folder/it's \$mine.yaml"
