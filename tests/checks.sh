@@ -125,7 +125,7 @@ start_python() {
 
 # Run a script of Python with arguments: prints what the script prints, and has its exit code.
 python() {
-    local answer output
+    local answer output=
     printf '%s\0' "$#" "$PWD" "$@" >&"$asked"
     read -rt "$time_limit" -u "$answered" answer
     [[ $answer =~ ^[0-9]+$ ]] || { echo "$answer"; return 1; }

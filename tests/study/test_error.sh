@@ -5,6 +5,7 @@
 #   tests/study/test_error.sh PROGRAM
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
+start_python
 
 # ---- an equilibrium: the lift of a foil that bends
 
@@ -66,17 +67,12 @@ cp out table
 run gather within
 check gather_takes_the_same_steps cmp out table
 cp -r within warned
-/usr/bin/python3 -c 'import netCDF4; netCDF4.Dataset("warned/member-0000.nc", "a").warnings = "too few nodes"'
+python "$root/tests/study/warn.py" warned/member-0000.nc 'too few nodes'
 run gather warned --strict
 check warnings_of_the_case_are_not_those_of_the_stated_value test "$code" = 0 -a -z "$(grep 'too few nodes' out)"
 # member that states the value with one warning, as --strict counts it
-stated=$(/usr/bin/python3 - <<'end'
-import glob, netCDF4
-value = float(netCDF4.Dataset("warned/study.nc")["stated_steady_lift"][0])
-print(min(glob.glob("warned/member-*.nc"), key=lambda path: abs(float(netCDF4.Dataset(path)["steady_lift"][0]) - value)))
-end
-)
-/usr/bin/python3 -c 'import netCDF4, sys; netCDF4.Dataset(sys.argv[1], "a").warnings = "too few nodes"' "$stated"
+stated=$(python "$root/tests/study/stated.py" warned)
+python "$root/tests/study/warn.py" "$stated" 'too few nodes'
 refused one_warning_of_the_stated_value_is_enough_for_strict 3 '1 warning about the stated value, with --strict' \
     gather warned --strict
 run info within/study.nc
@@ -113,9 +109,9 @@ check choices_are_listed_apart grep -qE '^choices, not in the sum: wake.smoothin
 check the_noise_is_stated grep -qE '^noise of a value, of integrator and search: ' out
 check only_the_case_has_multipliers test "$(ncdump -v steady_error swimmer-study/study.nc | sed -n '/^data/,$p' | tr -d ' \n;}' |
     sed 's/.*=//' | tr , '\n' | grep -c '^[0-9]')" = 1
-run error swimmer.yaml --of steady_multiplier --no-confirm -j 2 -o multiplier
+run error swimmer.yaml --of steady_multiplier --no-confirm -j 2 -o multiplier --set time.shedding_interval=0.05
 check a_multiplier_has_its_error_and_a_verdict grep -qE '^steady_multiplier: 0[.][0-9]+ [+]- 0[.]0[0-9]+ [(][0-9.]+ %[)]: stable' out
-run error swimmer.yaml --of steady_speed --models -j 2 -o models --set 'fish[*].sheet_points=33'
+run error swimmer.yaml --of steady_speed --models -j 2 -o models --set 'fish[*].sheet_points=33' --set time.shedding_interval=0.05
 check other_models_have_a_second_line grep -qE '^other models: from [0-9.]+ m s-1 \([a-z_.]+ [a-z0-9.+]+\) to [0-9.]+ m s-1 \(' out
 check each_choice_is_listed grep -qE '^choices.*fish.force \(pressure \[reactive\]\) [0-9.]+ %; fish.drag.normal \(2 \[1\] 0\)' out
 check the_table_has_the_range test "$(grep -cE ',(lowest|highest),[a-z_.]+ [a-z0-9.+]+,nan,' models/error.csv)" = 2
@@ -149,26 +145,12 @@ run gather compared
 check gather_needs_the_members_only cmp out table
 run info compared/study.nc
 check the_file_is_enough_for_the_comparison cmp <(sed -n '/over that of/,$p' out) <(grep -v '^member .* warning: ' table)
-check the_ratio_of_the_file_is_that_of_the_members /usr/bin/python3 - <<'end'
-import csv, netCDF4, numpy as np
-study = netCDF4.Dataset("compared/study.nc")
-ratio = float(study["stated_ratio_speed"][0])
-names = {getattr(netCDF4.Dataset(f"compared/member-{m:04}.nc"), "title"): m for m in range(2)}
-own, other = (float(study["speed"][names[name], 0]) for name in ("stiff", "soft"))
-assert abs(ratio - own / other) < 1e-12 * ratio, (ratio, own, other)
-rows = [row for row in csv.DictReader(open("compared/error.csv")) if row["key"] == "sum"]
-# all levels of the nodes have the finest sheet, those of the other keys the value of the case among them
-level, n = study["level_ratio_speed"][..., 0], study["key_levels"][:]
-assert all(np.isfinite(level[k]).sum() == n[k] and (k == 0 or ratio in level[k]) for k in np.flatnonzero(n > 1)), level
-assert [row["quantity"] for row in rows] == ["speed", "ratio_speed", "change_speed"], rows
-assert abs(float(rows[1]["error"]) / float(study["bar_ratio_speed"][0]) - 1) < 1e-2
-end
+check the_ratio_of_the_file_is_that_of_the_members python "$root/tests/study/compared.py"
 run error soft.yaml --of speed --no-confirm -o from_first --sweep 'fish[*].body.modulus=1e7,2e7' --against first
 check along_a_sweep_ratios_have_a_table eval "grep -qx 'Ratios to point 0:' out && grep -qx 'Differences from point 0:' out"
-check the_ratio_along_a_sweep_is_that_of_the_cases /usr/bin/python3 -c "
-import netCDF4
-one, all = (netCDF4.Dataset(name + '/study.nc')['stated_ratio_speed'][:].ravel() for name in ('compared', 'from_first'))
-assert list(all) == [1, one[0]], (one, all)"
+one=$(python "$root/tests/value.py" compared/study.nc stated_ratio_speed)
+check the_ratio_along_a_sweep_is_that_of_the_cases test "$(python "$root/tests/value.py" from_first/study.nc stated_ratio_speed)" = \
+    "1.0 $one"
 refused a_case_or_a_point_or_a_fish 2 '--against 2e7: expects the file of a case, FISH=FISH' error soft.yaml --of speed --against 2e7
 refused no_such_point 2 'error.against: 3e7 is neither `first` nor a value of fish[*].body.modulus' \
     error soft.yaml --of speed --sweep 'fish[*].body.modulus=1e7,2e7' --against 3e7
@@ -184,7 +166,7 @@ check scripts_of_slurm "$program" study swimmer.yaml --slurm -o cluster
 check they_run_all_members has cluster/array.sbatch "--array=0-$(($(ls swimmer-study/member-*.nc | wc -l) - 1))"
 
 # a member that fails leaves the sum unknown
-run study swimmer.yaml -o failing --set steady.beats=4
+run study swimmer.yaml -o failing --set steady.beats=4 --set 'error={of: steady_speed, keys: [nodes]}'
 check members_that_fail_are_reported_once eval 'grep -qE "^[0-9]+ members \(0-[-0-9, ]+\): failed: no steady state in 4 beats" out &&
     test "$(grep -c "no steady state in 4 beats" out)" = 1'
 check then_the_error_is_unknown eval 'test "$code" != 0 && grep -qE "^sum +unknown" out'
@@ -198,17 +180,17 @@ check sensitivities_end_with_0 test "$code" = 0
 check a_number_has_its_steps_and_its_error grep -qE '^fish.body.modulus +8.149e\+04 Pa +\+-4, 8 % +\+0\.[0-9]+ +0\.0*[0-9]+ *$' out
 check no_numerical_key_is_varied eval '! grep -q "fish.nodes" out'
 check the_value_has_no_error_bar grep -qE '^steady_lift of foil: [0-9.]+ N$' out
-check density_and_modulus_make_1 /usr/bin/python3 "$root/tests/study/sums.py" lift steady_lift 1 fish.body.modulus=1 fluid.density=1
-check length_makes_2 /usr/bin/python3 "$root/tests/study/sums.py" lift steady_lift 2 fish.length=1
+check density_and_modulus_make_1 python "$root/tests/study/sums.py" lift steady_lift 1 fish.body.modulus=1 fluid.density=1
+check length_makes_2 python "$root/tests/study/sums.py" lift steady_lift 2 fish.length=1
 # the reactive swimmer has no viscosity: times scale with the beat, also the interval that it is tied to
 run error swimmer.yaml --of steady_speed --of steady_cost_of_transport --sensitivity=wave.frequency,modulus,length,suction \
     -o swims --set error=none
 check what_has_no_effect_is_refused has err 'error.sensitivity: fish.pressure.suction changes nothing in this case'
 run error swimmer.yaml --of steady_speed --of steady_cost_of_transport --sensitivity=wave.frequency,modulus,length -o swims \
-    --set error=none -j 2
-check times_make_the_speed /usr/bin/python3 "$root/tests/study/sums.py" swims steady_speed 1 fish.wave.frequency=1 fish.body.modulus=2
-check times_make_the_cost /usr/bin/python3 "$root/tests/study/sums.py" swims steady_cost_of_transport 2 fish.wave.frequency=1 fish.body.modulus=2
-check lengths_make_the_speed /usr/bin/python3 "$root/tests/study/sums.py" swims steady_speed 1 fish.length=1 fish.body.modulus=2
+    --set error=none --set time.shedding_interval=0.05 -j 2
+check times_make_the_speed python "$root/tests/study/sums.py" swims steady_speed 1 fish.wave.frequency=1 fish.body.modulus=2
+check times_make_the_cost python "$root/tests/study/sums.py" swims steady_cost_of_transport 2 fish.wave.frequency=1 fish.body.modulus=2
+check lengths_make_the_speed python "$root/tests/study/sums.py" swims steady_speed 1 fish.length=1 fish.body.modulus=2
 sed -n '/^steady_speed/,$p' out >table
 run gather swims
 check gather_has_the_sensitivities cmp out table
@@ -220,25 +202,12 @@ check a_bound_has_steps_on_one_side grep -qE '^fish.pressure.suction +1 +-4, 8, 
 # uncertain numbers of the case: linear, in quadrature with each other and the rest
 run error foil.yaml --of steady_lift -o uncertain --uncertain modulus=10% --uncertain fluid.density=0.05 --set 'error={of: steady_lift, keys: [nodes]}'
 check an_uncertain_number_is_in_the_table grep -qE '^fish.body.modulus +8.149e\+04 \+- 10 % +[0-9.]+ +input +' out
-check errors_add_in_quadrature /usr/bin/python3 - <<'end'
-import csv
-rows = list(csv.DictReader(open("uncertain/error.csv")))
-of = {(row["quantity"], row["key"]): row for row in rows}
-number = lambda key, column: float(of["steady_lift", key][column])
-parts = [number(key, "error") for key in ("fish.nodes", "fish.body.modulus", "fluid.density")]
-assert abs(number("sum", "error") / sum(part**2 for part in parts) ** 0.5 - 1) < 1e-2, parts
-slope = float(of["sensitivity_steady_lift", "fish.body.modulus"]["value"])
-assert abs(parts[1] / (0.1 * slope * number("sum", "value")) - 1) < 1e-2, (parts, slope)
-end
+check errors_add_in_quadrature python "$root/tests/study/quadrature.py"
 refused no_state_to_start_from 4 '--from none.nc: cannot be read' error swimmer.yaml --of steady_speed --from none.nc -o none
 refused a_run_has_no_search 2 '--from table: starts a search' error swimmer.yaml --of speed --from table -o none
-run error swimmer.yaml --of steady_speed --sensitivity=modulus --from swims/member-0000.nc --set error=none -o again
-check a_start_changes_no_more_than_the_errors /usr/bin/python3 - <<'end'
-import csv
-one, two = ([row for row in csv.DictReader(open(f"{name}/error.csv")) if row["key"] == "fish.body.modulus" and
-             row["quantity"] == "sensitivity_steady_speed"][0] for name in ("swims", "again"))
-assert abs(float(one["value"]) - float(two["value"])) <= float(one["error"]) + float(two["error"]), (one, two)
-end
+run error swimmer.yaml --of steady_speed --sensitivity=modulus --from swims/member-0000.nc --set error=none \
+    --set time.shedding_interval=0.05 -o again
+check a_start_changes_no_more_than_the_errors python "$root/tests/study/started.py"
 refused no_such_number 2 "error.sensitivity: 'nodes' is no such number; these are: length, " error foil.yaml --of steady_lift --sensitivity=nodes
 refused one_fish_of_all 2 'fish[*] varies that of all fish in proportion' error foil.yaml --of steady_lift '--sensitivity=fish[0].length'
 refused several_keys_end_so 2 "'smoothing' is the end of several keys: wake.smoothing and sheet.smoothing" error foil.yaml --of steady_lift --sensitivity=smoothing
@@ -334,8 +303,8 @@ check a_number_of_the_run_is_not_of_a_fish test "$(grep -c '^steps: ' out)-$(gre
 
 # ---- the two tables of a study
 
-for folder in foil-error swimmer-study models along five one few; do
-    check "error.csv and study.nc say the same: $folder" /usr/bin/python3 "$root/tests/study/budget.py" "$folder"
+for study in foil-error swimmer-study models along five one few; do
+    check "error.csv and study.nc say the same: $study" python "$root/tests/study/budget.py" "$study"
 done
 
 finish
