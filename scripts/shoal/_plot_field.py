@@ -1,6 +1,6 @@
 """Draw the file of `shoal field` on a figure: vorticity or speed, bodies, and streamlines if asked for. Used by shoal.plot."""
 
-from ._plot_style import BODY, BODY_EDGE, Wall, colour_bar, matplotlib, with_unit
+from ._plot_style import BODY, BODY_EDGE, STREAMLINES, Wall, colour_bar, matplotlib, with_unit
 from ._files import FileError, np, open_dataset, outline, walls
 
 SPECIAL = 0.995  # share of the points below the end of the scale: bound sheets are much stronger than wakes
@@ -43,7 +43,9 @@ def draw(path, figure, with_speed=False, with_streamlines=False):
     mesh = axes.pcolormesh(field.x, field.y, values, shading="gouraud", rasterized=True, **scale)
     if with_streamlines:
         colour = "white" if with_speed else "#444444"
-        axes.streamplot(field.x, field.y, field.u, field.v, color=colour, linewidth=0.5, arrowsize=0.6, density=1.4)
+        lines = axes.streamplot(field.x, field.y, field.u, field.v, color=colour, linewidth=0.5, arrowsize=0.6, density=1.4).lines
+        for one in (lines, *axes.patches):
+            one.set_gid(STREAMLINES)
     bodies = matplotlib.collections.PolyCollection(
         field.outlines, facecolors=BODY, edgecolors=BODY_EDGE, linewidths=0.7, zorder=3
     )

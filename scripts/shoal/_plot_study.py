@@ -531,6 +531,7 @@ def draw_cells(axes, grid, values, digits, norm, scales):
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter("{x:g}")
         axis.set_minor_locator(matplotlib.ticker.NullLocator())
+    axes.tick_params(length=0)  # beside the number of a cell a tick looks like a sign
     return mesh
 
 

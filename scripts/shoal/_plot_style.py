@@ -201,15 +201,26 @@ def narrowed(legend, n_columns, shift=0.0):
     return legend
 
 
+def is_over_another(legend, box):
+    """Whether a legend covers a panel beside its own, with its letter, or the legend of one. The panel above moves away."""
+    beside = [axes for axes in legend.axes.figure.axes if axes.get_visible() and axes is not legend.axes]
+    beside = [axes for axes in beside if axes.get_window_extent().y0 < box.y0]
+    extents = [axes.get_window_extent() for axes in beside]
+    boxes = [Bbox.from_extents(one.x0 - LETTER, one.y0, one.x1, one.y1 + legend.above) for one in extents]
+    boxes += [axes.get_legend().get_window_extent() for axes in beside if axes.get_legend()]
+    return any(box.overlaps(one) for one in boxes)
+
+
 def fit_legends(figure):
-    """Give each legend above a panel as many columns as the figure has room for, and move it into the figure."""
+    """Give each legend above a panel as many columns as there is room for in the figure, beside other panels, and move it into
+    the figure."""
     width = figure.bbox.width
     for axes in figure.axes:
         legend = axes.get_legend()
         if not hasattr(legend, "room"):
             continue
         box = legend.get_window_extent()
-        while legend._ncols > 1 and box.width > width:
+        while legend._ncols > 1 and (box.width > width or is_over_another(legend, box)):
             legend = narrowed(legend, legend._ncols - 1)
             box = legend.get_window_extent()
         beyond = max(box.x1 - width, 0) if legend.side == "left" else min(box.x0, 0)
@@ -218,9 +229,14 @@ def fit_legends(figure):
 
 
 def fit_labels(figure):
-    """Break the label of an axis that is longer than the panel; the layout lets it be cut."""
+    """Break the label of an axis that is longer than the panel or leaves the figure; the layout lets it be cut."""
+    whole = figure.bbox.padded(1)
+    rules = (
+        ("yaxis", lambda box, panel: box.height > panel.height),
+        ("xaxis", lambda box, panel: box.width > 1.3 * panel.width or box.x0 < whole.x0 or box.x1 > whole.x1),
+    )
     for axes in figure.axes:
-        for label, is_long in ((axes.yaxis.label, lambda box, panel: box.height > panel.height), (axes.xaxis.label, lambda box, panel: box.width > 1.3 * panel.width)):
+        for label, is_long in ((getattr(axes, name).label, rule) for name, rule in rules):
             words = label.get_text().split(" ")
             if axes.get_visible() and "\n" not in label.get_text() and len(words) > 1 and is_long(label.get_window_extent(), axes.get_window_extent()):
                 at = min(range(1, len(words)), key=lambda i: abs(len(" ".join(words[:i])) - len(" ".join(words[i:]))))
@@ -239,7 +255,8 @@ def fit(figure):
 # ---- figures of a paper
 
 MILLIMETRES = 25.4  # of an inch
-NARROW = 120  # below this width text is smaller [mm]
+NARROW = 120  # below this width text is smaller [mm], and there are two panels of fish in a row
+STREAMLINES = "streamlines"  # the mark of lines and arrows that are finer there
 LETTER = 12  # room above a panel for its letter [points]
 
 
@@ -253,8 +270,13 @@ def paper(figure, width=170):
     was, height = figure.get_size_inches()
     target = width / MILLIMETRES
     figure.set_size_inches(target, height * max(target / was, 0.8))
-    for text in figure.findobj(matplotlib.text.Text) if width < NARROW else []:
-        text.set_size(0.8 * text.get_size())
+    if width < NARROW:
+        for text in figure.findobj(matplotlib.text.Text):
+            text.set_size(0.8 * text.get_size())
+        for lines in figure.findobj(lambda artist: artist.get_gid() == STREAMLINES):
+            lines.set_linewidth(0.5 * np.asarray(lines.get_linewidth()))
+            if hasattr(lines, "set_mutation_scale"):  # an arrow
+                lines.set_mutation_scale(0.5 * lines.get_mutation_scale())
     for legend in (axes.get_legend() for axes in shown if len(shown) > 1):
         if hasattr(legend, "room"):
             legend.above = max(legend.above, LETTER)

@@ -23,8 +23,8 @@ from . import _plot_study as plot_study_module
 from ._files import Results, kind_of
 from ._library import CaseError, FileError, kind as kind_of_value
 from ._plot_style import (
-    BLUE, BODY, BODY_EDGE, DASHES, GRID, LINES, MANY, PATH, PHASES, RED, STYLE, WIDTH, Wall, add_legend, calm, colour_bar,
-    draw_bands, fit, matplotlib, paper, unit_text, with_unit,
+    BLUE, BODY, BODY_EDGE, DASHES, GRID, LINES, MANY, NARROW, PATH, PHASES, RED, STYLE, WIDTH, Wall, add_legend, calm,
+    colour_bar, draw_bands, fit, matplotlib, paper, unit_text, with_unit,
 )
 
 from matplotlib import pyplot
@@ -249,13 +249,15 @@ def chosen(results, options, most=None):
     return fish
 
 
-def panel_per_fish(of):
-    """The fish that get a panel of a grid, a few of many, shared out evenly; and the columns that leave the fewest gaps."""
+def panel_per_fish(of, options):
+    """The fish that get a panel of a grid, a few of many, shared out evenly; and the columns that leave the fewest gaps, two
+    in a column of a journal."""
     shown = [of[i] for i in np.unique(np.linspace(0, len(of) - 1, min(len(of), MOST_PANELS)).round().astype(int))]
     n_columns = 2 if len(shown) == 4 else min(len(shown), 3)
     if len(shown) > 6:
         n_columns = min((4, 5, 3, 6), key=lambda n: -len(shown) % n)
-    return shown, n_columns
+    is_narrow = (getattr(options, "width", None) or NARROW) < NARROW
+    return shown, min(n_columns, 2) if is_narrow else n_columns
 
 
 def legend_above_titles(all_axes, shown, of, handles=()):
@@ -270,7 +272,7 @@ def legend_above_titles(all_axes, shown, of, handles=()):
 def plot_gait(results, options):
     """The reference shapes of each fish over its last beat, a grid with one panel per fish."""
     of = chosen(results, options)
-    shown, n_columns = panel_per_fish(of)
+    shown, n_columns = panel_per_fish(of, options)
     shapes, curvatures = {}, results["natural_curvature"]
     for fish in shown:
         rows = beat_rows(results, fish, options.shapes)
@@ -392,7 +394,7 @@ def plot_each(results, options):
     time, values = results.time[drawn], values[drawn]
     if options.each.endswith("heading"):
         values = unwrapped(values)
-    shown, n_columns = panel_per_fish(of)
+    shown, n_columns = panel_per_fish(of, options)
     n_rows = math.ceil(len(shown) / n_columns)
     figure, all_axes = panels(len(shown), n_rows, n_columns, 1.4 if n_rows > 1 else 2.5)
     for fish, axes in zip(shown, all_axes):
@@ -533,7 +535,7 @@ def plot_forces(results, options):
 def plot_pressure(results, options):
     """The jump of the pressure along each body at some times of its last beat, one panel per fish."""
     of = chosen(results, options)
-    shown, n_columns = panel_per_fish(of)
+    shown, n_columns = panel_per_fish(of, options)
     n_rows = math.ceil(len(shown) / n_columns)
     figure, all_axes = panels(len(shown), n_rows, n_columns, 6 / (n_columns + 1) if n_columns < 3 else 1.6)
     jump, arc = results["pressure"], results["control_arc"]
