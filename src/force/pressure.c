@@ -39,6 +39,9 @@ static void pressure_create(struct arena *arena, struct fluid_force *force) {
     NEW(arena, created->parts, 4 * n);
     NEW(arena, created->at_points, N_AT_POINTS * n_control);
     NEW(arena, created->spread, 2 * n_control);
+    const long n_input = 4L * n + fish->n_sheet + 5L * n_control;
+    NEW(arena, created->input.last, n_input);
+    NEW(arena, created->input.next, n_input);
 
     NEW(arena, created->share, n_control * n);
     for (int c = 0; c < n_control; c++) {
@@ -47,8 +50,8 @@ static void pressure_create(struct arena *arena, struct fluid_force *force) {
 }
 
 // R is the sum over j of P_j times the circulation of vortex j. strength: the unknowns, or their rates. If the
-// circulations are the same as before, R is kept, because the energy balance of a step needs it twice.
-static void pressure_find_matrix(struct pressure *p, const double *strength, struct pressure_matrix *to) {
+// circulations are the same as before, R is kept. Returns whether it is new.
+static bool pressure_find_matrix(struct pressure *p, const double *strength, struct pressure_matrix *to) {
     const struct fish *const fish = p->fish;
     bool is_new = false;
     for (int j = 0; j < fish->n_sheet; j++) {
@@ -58,6 +61,7 @@ static void pressure_find_matrix(struct pressure *p, const double *strength, str
     }
 
     if (is_new) sheet_integrals_matrix(fish->integrals, to->circulation, p->parts, to->value);
+    return is_new;
 }
 
 // add E3 R x to the pairs of all nodes; in x, too, all x components come first
@@ -143,8 +147,40 @@ struct suction_law pressure_suction_law(double full, double bound) {
                                 .by_bound = is_attached ? by_most : by_least};
 }
 
+static void input_add(struct pressure_input *input, const double *value, int n) {
+    memcpy(input->next + input->n, value, (size_t)n * sizeof *value);
+    input->n += (size_t)n;
+}
+
+// take the values that an update depends on; whether they differ from those of the last update
+static bool input_is_new(struct pressure_input *input, const struct fish *fish, const struct flow_at_body *flow,
+                         const double *y) {
+    const size_t n_before = input->n;
+    const int n_control = fish->n_control;
+    input->n = 0;
+    input_add(input, y + fish->at.x, 2 * fish->n_nodes);
+    input_add(input, y + fish->at.vx, 2 * fish->n_nodes);
+    input_add(input, y + fish->at.gamma, fish->n_sheet);
+    input_add(input, flow->u, n_control);
+    input_add(input, flow->v, n_control);
+    if (flow->div) {
+        input_add(input, flow->div, n_control);
+        for (int i = 0; i < 2; i++) input_add(input, flow->edge + i * flow->edge_stride, n_control);
+    }
+
+    const bool is_same =
+        input->exists && input->n == n_before && memcmp(input->next, input->last, input->n * sizeof *input->next) == 0;
+    double *const next = input->next;
+    input->next = input->last;
+    input->last = next;
+    input->exists = true;
+    return !is_same;
+}
+
 void pressure_update(struct pressure *p, const struct flow_at_body *flow, const double *y) {
     const struct fish *fish = p->fish;
+    if (!input_is_new(&p->input, fish, flow, y)) return;
+    p->has_rate = false;
     const size_t size = 2 * (size_t)fish->n_nodes * sizeof *p->momentum;
     pressure_find_matrix(p, y, &p->matrix);
     memset(p->momentum, 0, size);
@@ -386,9 +422,11 @@ static void pressure_flow_jacobian(const struct fluid_force *force, const struct
 
 void pressure_update_rate(struct pressure *p, const double *y, const double *yp) {
     const struct fish *fish = p->fish;
+    const bool is_new = pressure_find_matrix(p, yp, &p->rate);
+    if (p->has_rate && !is_new) return;
+    p->has_rate = true;
     memset(p->momentum_rate, 0, 2 * (size_t)fish->n_nodes * sizeof *p->momentum_rate);
     pressure_add_product(p, &p->matrix, y + fish->at.vx, p->momentum_rate);
-    pressure_find_matrix(p, yp, &p->rate);
     pressure_add_product(p, &p->rate, y + fish->at.x, p->momentum_rate);
 }
 

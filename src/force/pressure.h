@@ -36,10 +36,19 @@ struct pressure_matrix {
     double *value;       /* by columns, kg s-1 or kg s-2                                   (n_nodes, n_nodes) */
 };
 
+/* The values that an update takes, of the last one and of the next one. */
+struct pressure_input {
+    bool exists; /* whether there was an update */
+    size_t n;
+    double *last, *next; /* (n) */
+};
+
 /* The pressure force on one fish as of the last pressure_update. Pairs are ordered as x of all nodes, then y. */
 struct pressure {
     struct arena *arena;
     const struct fish *fish;
+    struct pressure_input input;
+    bool has_rate;                       /* whether momentum_rate belongs to the last update and to rate */
     struct pressure_matrix matrix, rate; /* R and dR/dt; the latter set by pressure_update_rate */
     double *momentum;      /* I, the added momentum of the nodes, N s                         (2 n_nodes) */
     double *momentum_rate; /* dI/dt, N: set by pressure_update_rate                             (2 n_nodes) */
@@ -67,8 +76,9 @@ struct suction_law {
 };
 struct suction_law pressure_suction_law(double full, double bound);
 
-/* Update matrix, momentum, force, suction and points for the unknowns y and the velocity of the fluid. All functions
- * below need this update first, with the same y. */
+/* Update matrix, momentum, force, suction and points for the unknowns y and the velocity of the fluid, unless both are
+ * those of the last update, bit by bit: the books of a step and of an event ask several times. All functions below need
+ * this update first, with the same y. */
 void pressure_update(struct pressure *pressure, const struct flow_at_body *flow, const double *y);
 
 /* An estimate of the ratio of p to v of node k: 1 plus the added mass of a plate over the mass of the node. */

@@ -538,6 +538,45 @@ TEST(a_kink_at_the_tail_has_its_exact_circulation) {
     }
 }
 
+// an update with the same input changes nothing, with any other value it does
+TEST(an_update_repeats_only_for_new_input) {
+    struct setup setup = setup_of(
+        "time: {end: 1, shedding_interval: 0.01}\n"
+        "fish: [{nodes: 17, sheet_points: 33, force: pressure, pressure: {span: finite}}]\n");
+    const struct fish *const fish = setup.school->fish;
+    struct pressure *const pressure = setup.residual->force[0].pressure;
+    double *const y = setup.state->y, *const yp = setup.state->yp, flow_of[5][64];
+    const struct flow_at_body flow = {
+        .u = flow_of[0], .v = flow_of[1], .div = flow_of[2], .edge = flow_of[3], .edge_stride = 64};
+    for (int k = 0; k < 5; k++) {
+        for (int c = 0; c < 64; c++) flow_of[k][c] = 0.1 * k + 0.01 * c;
+    }
+    for (int j = 0; j < fish->n_sheet; j++) y[fish->at.gamma + j] = yp[fish->at.gamma + j] = 0.1 + 0.01 * j;
+
+    const int last = fish->n_control - 1;
+    double *const input[] = {&y[fish->at.y + 3], &y[fish->at.vx],   &y[fish->at.vy + 8], &y[fish->at.gamma + last],
+                             &flow_of[0][0],     &flow_of[1][last], &flow_of[2][1],      &flow_of[3][last],
+                             &flow_of[4][last]};
+    for (size_t i = 0; i < sizeof input / sizeof *input; i++) {
+        for (int is_new = 0; is_new < 2; is_new++) {
+            pressure_update(pressure, &flow, y);
+            pressure_update_rate(pressure, y, yp);
+            pressure->force[0] = pressure->momentum_rate[0] = 1e9;
+            if (is_new) *input[i] += 1e-15 * (1 + fabs(*input[i]));
+            pressure_update(pressure, &flow, y);
+            pressure_update_rate(pressure, y, yp);
+            assert_int_equal(pressure->force[0] < 1e9, is_new);
+            assert_int_equal(pressure->momentum_rate[0] < 1e9, is_new);
+        }
+    }
+
+    // the rate follows its own input too
+    pressure->momentum_rate[0] = 1e9;
+    yp[fish->at.gamma + last] += 1e-3;
+    pressure_update_rate(pressure, y, yp);
+    BELOW(pressure->momentum_rate[0], 1e9);
+}
+
 // a soft free fish starts to beat: energy balance, and momentum against forces
 TEST(energy_and_momentum_of_a_free_fish_are_accounted_for) {
     struct simulation *const simulation = school_simulation(
