@@ -5,6 +5,7 @@
 #   tests/app/test_steady_command.sh PROGRAM
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
+start_python
 
 cat >swim.yaml <<'end'
 format: 1
@@ -22,44 +23,14 @@ check info_knows_it_is_steady has out 'steady state after'
 check one_fish_has_no_place test -z "$(grep '^place' out)"
 check and_its_multipliers grep -qE '^    0[.][0-9]{4} [+]- 0[.]0[0-9]{3}: speed 1.00' out
 check and_whether_it_is_stable has out '  stable'
-cat >look.py <<'end'
-"""What is in the file of a steady state: its rows are the last two beats, its values those of the last."""
-import sys
-import netCDF4, numpy as np
-
-data = netCDF4.Dataset("swim.nc")
-data.set_auto_mask(False)
-time, beats = data["time"][:], int(data["steady_beats"][...])
-problems = []
-def demand(name, good):
-    if not good:
-        problems.append(name)
-demand("complete", data.run_status == "complete")
-demand("a row every 0.1 s for two beats", len(time) == 21 and np.allclose(np.diff(time), 0.1))
-demand("from the end of the search on", np.isclose(time[0], beats))
-demand("speed of the last beat", data["steady_speed"][0] == data["speed"][-1, 0])
-demand("the speed stays", abs(data["speed"][-1, 0] / data["speed"][0, 0] - 1) < 1e-4)
-demand("no thrust on the whole", abs(data["steady_force"][0]).max() < 1e-2 * np.abs(data["reactive_force"][:]).max())
-powers = [data["steady_" + name][0] for name in ("actuation_power", "damping_power", "fluid_power")]
-demand("the muscle pays for damping and fluid", abs(powers[0] + powers[1] - powers[2]) < 1e-3 * powers[0])
-demand("cost of transport", np.isclose(data["steady_cost_of_transport"][0], powers[0] / data["body_mass"][0]
-                                       / data["steady_speed"][0], rtol=1e-6))
-demand("three multipliers of six slots", np.isfinite(data["steady_multiplier"][:, 0]).sum() == 3)
-demand("the energy balance is that of the rows", abs(data["energy_balance"][-1, 0]) < 1e-3 * powers[0])
-demand("an ordinary run has none of this", "steady_speed" not in netCDF4.Dataset("run.nc").variables)
-sys.exit("; ".join(problems) or 0)
-end
 run run swim.yaml -q -o run.nc --set time.end=0.1
-check the_file_says_what_is_printed /usr/bin/python3 look.py
+check the_file_says_what_is_printed python "$root/tests/app/steady_file.py"
 run steady swim.yaml -o other.nc --set steady.output_beats=1 --set steady.multipliers=false
 check a_search_prints_its_file_and_answer test "$code" = 0 -a "$(head -1 out)" = other.nc -a -n "$(grep 'Strouhal' out)"
 check without_multipliers_there_are_none test -z "$(grep multipliers out)"
 progress='^beat +[0-9]+  residual [0-9.]+e[-+]0[0-9], target 1e-05  [0-9.]+ s  speed +0[.][0-9]{4} m/s$'
 check progress_goes_to_stderr test "$(grep -cE "$progress" err)" -gt 1 -a "$(grep '^beat ' err | grep -cvE "$progress")" = 0 \
     -a "$(grep -o '^beat *[0-9]*' err | grep -vc '[05]$')" = 0
-check plot_draws_it /usr/bin/python3 "$root/scripts/plot.py" time swim.nc swim.png
-check xarray_opens_it /usr/bin/python3 -c \
-    'import xarray; xarray.open_dataset("swim.nc").steady_speed.sel(fish="a fish").item()'
 
 # ---- a fish with a slowly decaying oscillation: the end of a swing is not a steady state
 
@@ -68,61 +39,29 @@ for start in 0 1.5; do
         --set time.output_interval=0.1 --set output.wake_interval=0.1 --set steady.tolerance=1e-4 \
         --set "fish[0].start.speed=$start"
 done
-cat >same.py <<'end'
-"""Two searches come to one speed, to twice what both say of their errors: they ended at 1.09 and 0.87 m/s once."""
-import netCDF4
-
-speed, error = zip(*((float(data["steady_speed"][0]), float(data["steady_error"][...]))
-                     for data in (netCDF4.Dataset("from0.nc"), netCDF4.Dataset("from1.5.nc"))))
-assert max(error) < 0.01 and abs(speed[1] - speed[0]) < 2 * sum(error), (speed, error)
-end
-check the_speed_does_not_depend_on_the_start /usr/bin/python3 same.py
+check the_speed_does_not_depend_on_the_start python "$root/tests/app/steady_starts.py"
 
 run steady "$root/cases/single_free.yaml" -q -o swings.nc --set time.shedding_interval=0.02 \
     --set time.output_interval=0.1 --set output.wake_interval=0.1 --set steady.tolerance=1e-4
 check a_swing_is_left_for_a_steady_state test "$code" = 0
-cat >near.py <<'end'
-"""What is found is near the fixed point: it was 0.1 lengths per beat from one, at the end of a swing, once."""
-import netCDF4
-
-data = netCDF4.Dataset("swings.nc")
-assert data["steady_error"][...] < 3e-3, data["steady_error"][...]
-end
-check and_that_is_near /usr/bin/python3 near.py
+# it was 0.1 lengths per beat from the fixed point, at the end of a swing, once
+error=$(python "$root/tests/value.py" swings.nc steady_error)
+check and_that_is_near awk -v error="$error" 'BEGIN { exit !(error != "" && error + 0 < 3e-3) }'
 
 # ---- as JSON
 
-cat >compare.py <<'end'
-"""What is printed is what is in the file."""
-import json
-import sys
-import netCDF4, numpy as np
-
-found, data = json.load(open("out")), netCDF4.Dataset("json.nc")
-data.set_auto_mask(False)
-names = [name for name in data.variables if name.startswith("steady_")]
-assert sorted(found) == sorted(names + ["file", "fish"]), sorted(found)
-assert found["file"] == "json.nc" and found["fish"] == ["a \"fish\""], found
-for name in names:
-    values = np.array(data[name][...], float)
-    if data[name].dimensions[:1] == ("multiplier",):
-        values = values[np.isfinite(values.reshape(len(values), -1)).any(axis=1)]
-    assert len(values.shape) == 0 or len(found[name]) == len(values), name
-    assert np.array_equal(np.ravel(np.array(found[name], float)), np.ravel(values), equal_nan=True), name
-assert len(found["steady_multiplier"]) == int(sys.argv[1])
-end
 run steady swim.yaml -o json.nc --json -q --set "fish[0].name='a \"fish\"'"
-check json_is_what_is_in_the_file /usr/bin/python3 compare.py 3
+check json_is_what_is_in_the_file python "$root/tests/app/steady_json.py" 3
 check and_quiet_progress test ! -s err
 run steady swim.yaml -o json.nc --json --force --set "fish[0].name='a \"fish\"'" --set steady.multipliers=false
-check json_of_a_state_without_multipliers /usr/bin/python3 compare.py 0
+check json_of_a_state_without_multipliers python "$root/tests/app/steady_json.py" 0
 check json_knows_progress_goes_to_stderr grep -q '^beat ' err
 
 # ---- from another one, and as an axis of a study
 
 run steady swim.yaml -q -o again.nc --from swim.nc --set steady.multipliers=false
 check a_search_starts_from_another_one test "$code" = 0
-beats() { /usr/bin/python3 -c 'import netCDF4, sys; print(int(netCDF4.Dataset(sys.argv[1])["steady_beats"][...]))' "$1"; }
+beats() { python "$root/tests/value.py" "$1" steady_beats; }
 check and_is_shorter test "$(beats again.nc)" -lt "$(beats swim.nc)"
 refused a_run_is_no_start 4 'does not contain a steady state of 1 fish' steady swim.yaml -o no.nc --from run.nc
 sed 's/0.1}/0.1}\nsteady: {tolerance: 1e-3, multipliers: false, output_beats: 1}/' swim.yaml >axis.yaml
@@ -153,40 +92,13 @@ check an_equilibrium_is_found test "$code" = 0 -a "$(grep -cE "error|warning" er
 check and_said grep -q 'equilibrium: forces are in balance to [0-9.]*e-1' out
 check whether_it_diverges grep -qE 'static stiffness over that at rest: 1\.[0-9]*: does not diverge' out
 check what_has_no_meaning_is_not_shown test -z "$(grep -E 'muscle|Strouhal|turn' out)"
-cat >static.py <<'end'
-"""What is in the file of an equilibrium: one row, no wake, lift and no drag, in balance with what the clamp takes."""
-import sys
-import netCDF4, numpy as np
-
-data = netCDF4.Dataset("plate.nc")
-data.set_auto_mask(False)
-force, lift = data["steady_force"][0], data["steady_lift"][0]
-problems = []
-def demand(name, good):
-    if not good:
-        problems.append(name)
-demand("complete", data.run_status == "complete" and len(data["time"]) == 1)
-demand("the force of the row", np.allclose(data["pressure_force"][0, 0] + data["suction_force"][0, 0], force))
-demand("the clamp takes it", np.allclose(data["constraint_force"][0, 0], -force, atol=1e-9))
-demand("no drag", abs(data["steady_drag"][0]) < 1e-3 * lift and np.isclose(lift, force[1]))
-demand("Kutta and Joukowski", np.isclose(lift, data["shed_circulation"][0, 0], rtol=2e-3))
-demand("no wake", data["wake_count"][0, 0] == 0)
-demand("no beats", data["steady_beats"][...] == 0 and np.isnan(data["steady_multiplier"][:]).all())
-sys.exit("; ".join(problems) or 0)
-end
-check the_file_of_an_equilibrium /usr/bin/python3 static.py
-check plot_draws_an_equilibrium /usr/bin/python3 "$root/scripts/plot.py" swim plate.nc plate.png
+check the_file_of_an_equilibrium python "$root/tests/app/equilibrium_file.py"
 run steady plate.yaml -q -o other.nc --force --from plate.nc --set 'fluid.velocity=[1.1,0]'
 check an_equilibrium_starts_from_another test "$code" = 0
 sed '/^fish:/i sweep: [{key: fluid.velocity, values: [[0.5, 0], [1, 0], [2, 0]], steady: true}]' plate.yaml >grow.yaml
 run study grow.yaml -q -j 2
 check an_axis_can_be_the_stream test "$code" = 0
-check an_equilibrium_does_not_depend_on_its_start /usr/bin/python3 -c '
-import netCDF4, sys
-lift = [float(netCDF4.Dataset(f)["steady_lift"][0]) for f in ("plate.nc", "grow-study/member-0001.nc")]
-lift.append(float(netCDF4.Dataset("grow-study/study.nc")["steady_lift"][1, 0]))
-sys.exit(0 if max(lift) / min(lift) - 1 < 1e-8 else str(lift))'
-check plot_draws_what_the_stream_does /usr/bin/python3 "$root/scripts/plot.py" study grow-study/study.nc grow.png
+check an_equilibrium_does_not_depend_on_its_start python "$root/tests/app/equilibrium_starts.py"
 refused nothing_holds_it 2 'neither beats nor is held' steady plate.yaml -q -o none.nc \
     --set fish[0].motion.prescribed=none
 refused a_load_that_crushes_it 1 'the branch from rest ends at 0' steady plate.yaml -q -o crushed.nc \
@@ -208,7 +120,8 @@ end
 run steady touch.yaml -q --strict
 check bodies_that_touch_are_warned_of_as_in_a_run test "$code" = 3
 check with_their_names has err 'the bodies of upper and lower touch or cross at t ='
-check in_the_file_too /usr/bin/python3 -c 'import netCDF4; assert "upper and lower touch" in netCDF4.Dataset("touch.nc").warnings'
+python "$root/tests/value.py" touch.nc warnings >said
+check in_the_file_too has said 'upper and lower touch'
 
 # ---- a shallow fish without cross-flow drag is unstable in yaw
 
@@ -216,9 +129,9 @@ run steady swim.yaml -q -o shallow.nc --force --set time.shedding_interval=0.1 -
     --set 'fish[0]={nodes: 9, sheet_points: 51, force: pressure, body: {thickness: 0.2, depth: 0.1, modulus: 1e6}, drag: {normal: 0}, start: {speed: 0.4, heading: 170}}'
 check an_unstable_state_is_warned_of grep -qE 'state is unstable: a disturbance grows by the factor 1[.](0[5-9]|1)' err
 check and_so_is_a_circle grep -q 'swims in a circle: it turns by 0.[5-9][0-9]* degrees a beat (limit 0.5)' err
-check the_file_says_so /usr/bin/python3 -c 'import netCDF4
-lines = netCDF4.Dataset("shallow.nc").warnings.split("\n")
-assert len(lines) == 3 and "is unstable" in lines[0] and "in a circle" in lines[1] and "10 events" in lines[2], lines'
+mapfile -t said < <(python "$root/tests/value.py" shallow.nc warnings)
+check the_file_says_so eval '((${#said[@]} == 3)) && [[ ${said[0]} == *"is unstable"* && ${said[1]} == *"in a circle"* &&
+    ${said[2]} == *"10 events"* ]]'
 run steady swim.yaml -q -o turning.nc --set 'fish[0].control.bias=0.1' --set 'fish[0].nodes=9' --set time.shedding_interval=0.1 \
     --set steady.multipliers=false
 check a_circle_is_no_surprise_with_a_bias eval '! grep circle err && [[ $(ncdump -v steady_turn turning.nc) == *"steady_turn = -"[1-9]* ]]'
@@ -228,7 +141,7 @@ check a_stable_state_is_not test "$code" = 0 -a "$(grep -cE 'unstable|circle' er
 
 # ---- less than the errors of the integrator
 
-run steady swim.yaml -q -o least.nc --set "fish[0].nodes=5" --set steady.tolerance=1e-8 --set steady.beats=1000 --set steady.multipliers=true \
+run steady swim.yaml -q -o least.nc --set "fish[0].nodes=5" --set steady.tolerance=1e-8 --set steady.beats=1000 --set time.shedding_interval=0.1 \
     --set "wake={lifetime: 3 beats, decay: 2.25 beats}"
 check what_the_rows_do_not_keep_is_warned_of test "$code" = 0
 check with_the_remedy grep -q 'more than steady.tolerance, 1e-08: .* lower solver.rtol$' err

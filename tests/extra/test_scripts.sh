@@ -196,6 +196,10 @@ draws plot.py study line/study.nc --of shed_circulation --reference theory.csv -
 "$program" steady "$root/cases/flag.yaml" -q --threshold 'fish[*].body.modulus=50000:100000' --set 'fish[*].nodes=9' -o crossing \
     >/dev/null 2>&1
 draws plot.py study crossing/study.nc --of steady_growth -- crossing.png
+draws plot.py swim crossing/member-0000.nc equilibrium.png
+draws plot.py time formation.nc steady.png
+check "xarray opens a steady state" /usr/bin/python3 -c \
+    'import xarray; data = xarray.open_dataset("formation.nc"); data.steady_speed.sel(fish=data.fish[0]).item()'
 refuses 4 "steady_growth is not a quantity of the fish" plot.py study map/study.nc --of steady_growth -- no.png
 refuses 4 "nameless.csv: the first line has to be a comment with the source" plot.py study line/study.nc --reference nameless.csv -- no.png
 refuses 2 "--reference: only lines over a swept key take it" plot.py study map/study.nc --reference theory.csv -- no.png
