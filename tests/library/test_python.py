@@ -529,7 +529,7 @@ class Words(unittest.TestCase):
         self.assertEqual(environment.run.time, 0)
 
         # the set-up of the copy takes as long as that of the run
-        large = shoal.Run({**PAIR, "fish": [{"nodes": 500}]})
+        large = shoal.Run({**PAIR, "fish": [{"nodes": 250}]})
         for copied in (large.clone, lambda: copy.copy(large), lambda: copy.deepcopy(large)):
             timer = threading.Timer(0.05, os.kill, (os.getpid(), signal.SIGINT))
             timer.start()
@@ -539,7 +539,7 @@ class Words(unittest.TestCase):
         self.assertEqual(large.time, 0)
 
     def test_a_signal_handler_does_not_see_a_run_between_two_events(self):
-        solver = {"method": "rk4", "step": 2e-6, "max_steps": 100000}
+        solver = {"method": "rk4", "step": 5e-6, "max_steps": 100000}
         run, other, said = shoal.Run({**PAIR, "solver": solver}), shoal.Run(PAIR), []
 
         def use(*_):
