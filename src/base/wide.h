@@ -34,6 +34,15 @@
     type name parameters
 #endif
 
+/* A vector that the compiler keeps in registers in such a loop: of the width of AVX2, or of any arm64 processor. gcc
+ * keeps longer ones in memory. */
+#ifdef __x86_64__
+enum { WIDE_LANES = 4 };
+#else
+enum { WIDE_LANES = 2 };
+#endif
+typedef double wide_lanes __attribute__((vector_size(WIDE_LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
+
 /* product += matrix * vector: a dense matrix (n_rows, n_columns) in column-major order; columns are added in array
  * order. */
 void wide_multiply(int n_rows, int n_columns, const double *matrix, const double *vector, double *product);

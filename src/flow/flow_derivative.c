@@ -159,28 +159,29 @@ struct four_weights {
     double of[COLUMNS][FOUR];
 };
 
-/* Eight points at any address, in one vector. */
-enum { POINTS = 8, MOST = 5 };
-typedef double points_of_eight
-    __attribute__((vector_size(POINTS * sizeof(double)), aligned(sizeof(double)), may_alias));
-
-// Groups of eight points, beginning at the points `begin`, stay in registers while all columns pass by; groups may
-// overlap.
-static inline __attribute__((always_inline)) void add_weighted_groups(int n, const int begin[MOST],
+// Groups of points, beginning at the points `begin`, stay in registers while all columns pass by; groups may overlap.
+enum { MOST = 3 };
+static inline __attribute__((always_inline)) void add_weighted_groups(const int n, const int begin[MOST],
                                                                       const struct four_weights *weights, double factor,
                                                                       const double *value, long apart, double *to) {
-    points_of_eight v[FOUR][MOST], sum[MOST];
+    wide_lanes v[FOUR][MOST];
+#pragma GCC unroll 4
     for (int k = 0; k < FOUR; k++) {
-        for (int i = 0; i < n; i++) v[k][i] = *(const points_of_eight *)(value + k * apart + begin[i]);
+#pragma GCC unroll 3
+        for (int i = 0; i < n; i++) v[k][i] = *(const wide_lanes *)(value + k * apart + begin[i]);
     }
     for (int c = 0; c < weights->n_columns; c++) {
         double *const at = to + (weights->column ? weights->column[c] : c) * weights->stride, by[FOUR];
+#pragma GCC unroll 4
         for (int k = 0; k < FOUR; k++) by[k] = factor * weights->of[c][k];
+        wide_lanes sum[MOST];
+#pragma GCC unroll 3
         for (int i = 0; i < n; i++) {
-            sum[i] = *(points_of_eight *)(at + begin[i]);
+            sum[i] = *(const wide_lanes *)(at + begin[i]);
             sum[i] += by[0] * v[0][i] + by[1] * v[1][i] + by[2] * v[2][i] + by[3] * v[3][i];
         }
-        for (int i = 0; i < n; i++) *(points_of_eight *)(at + begin[i]) = sum[i];
+#pragma GCC unroll 3
+        for (int i = 0; i < n; i++) *(wide_lanes *)(at + begin[i]) = sum[i];
     }
 }
 
@@ -190,7 +191,7 @@ static WIDE(void, add_weighted,
             (const struct four_weights *weights, double factor, const double *value, long apart, double *to),
             (weights, factor, value, apart, to)) {
     const int n = weights->n_points;
-    for (int c = 0; c < weights->n_columns && n < POINTS; c++) {
+    for (int c = 0; c < weights->n_columns && n < WIDE_LANES; c++) {
         double *const at = to + (weights->column ? weights->column[c] : c) * weights->stride, by[FOUR];
         for (int k = 0; k < FOUR; k++) by[k] = factor * weights->of[c][k];
         for (int p = 0; p < n; p++) {
@@ -199,18 +200,16 @@ static WIDE(void, add_weighted,
         }
     }
 
-    // four groups at a time; the points that are left form a group that overlaps the last full one
-    const int n_full = n / POINTS, has_rest = n % POINTS > 0;
+    // two groups at a time; the points that are left form a group that overlaps the last full one
+    const int n_full = n / WIDE_LANES, has_rest = n % WIDE_LANES > 0;
     for (int done = 0; done < n_full;) {
         int begin[MOST], groups = 0;
-        while (groups < MOST - 1 && done < n_full) begin[groups++] = POINTS * done++;
-        if (done == n_full && has_rest) begin[groups++] = n - POINTS;
+        while (groups < MOST - 1 && done < n_full) begin[groups++] = WIDE_LANES * done++;
+        if (done == n_full && has_rest) begin[groups++] = n - WIDE_LANES;
         switch (groups) {
             case 1: add_weighted_groups(1, begin, weights, factor, value, apart, to); break;
             case 2: add_weighted_groups(2, begin, weights, factor, value, apart, to); break;
-            case 3: add_weighted_groups(3, begin, weights, factor, value, apart, to); break;
-            case 4: add_weighted_groups(4, begin, weights, factor, value, apart, to); break;
-            default: add_weighted_groups(5, begin, weights, factor, value, apart, to);
+            default: add_weighted_groups(3, begin, weights, factor, value, apart, to);
         }
     }
 }
