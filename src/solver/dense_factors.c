@@ -60,21 +60,18 @@ static WIDE(void, apply_panel, (const struct dense_factors *of, int first, int e
     }
 }
 
-/* Eight rows of a column; the compiler splits this type into vectors of the instruction set. */
-typedef double eight __attribute__((vector_size(8 * sizeof(double))));
-
-// subtract from eight rows below the panel the products of its rows with one tile of columns
+// subtract from a few rows below the panel the products of its rows with one tile of columns
 static inline __attribute__((always_inline)) void subtract_tile(const struct dense_factors *of, int first, int row,
                                                                 int column, const int n_columns) {
     const long stride = of->stride;
     const double *const left = of->value + first * stride + row, *const top = of->value + column * stride + first;
     double *const to = of->value + column * stride + row;
-    eight sum[TILE_COLUMNS];
+    wide_lanes sum[TILE_COLUMNS];
 
 #pragma GCC unroll 8
     for (int c = 0; c < n_columns; c++) memcpy(&sum[c], to + c * stride, sizeof sum[c]);
     for (int k = 0; k < PANEL; k++) {
-        eight rows;
+        wide_lanes rows;
         memcpy(&rows, left + k * stride, sizeof rows);
 #pragma GCC unroll 8
         for (int c = 0; c < n_columns; c++) sum[c] -= top[c * stride + k] * rows;
@@ -93,7 +90,7 @@ WIDE(int, dense_factors_set_up, (struct dense_factors * factors), (factors)) {
         }
 
         // all rows and columns behind the panel, which has PANEL columns here; the rows up to the stride are 0
-        for (int row = end; end < n && row < factors->stride; row += 8) {
+        for (int row = end; end < n && row < factors->stride; row += WIDE_LANES) {
             int column = end;
             for (; column + TILE_COLUMNS <= n; column += TILE_COLUMNS) {
                 subtract_tile(factors, first, row, column, TILE_COLUMNS);
