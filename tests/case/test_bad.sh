@@ -1,29 +1,23 @@
 #!/usr/bin/env bash
-# Each wrong case leads to the message and the exit code that it should, and to nothing else.
+# Wrong files and wrong assignments lead to the message and the exit code that they should, and to nothing else. The many
+# wrong cases that are lines of text are in test_bad_cases.c.
 #
 #   tests/case/test_bad.sh PROGRAM
-#
-# tests/case/bad_cases.txt holds the cases with their messages: all of standard error; the exit code is 2. Other files are
-# made here. To write the messages again (then read the difference!): WRITE=1 tests/case/test_bad.sh PROGRAM
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 
-table=$root/tests/case/bad_cases.txt
-mkdir "$folder/bad"
-cd "$folder/bad" || exit 2
-
-# Run `check` with the arguments; sets $code, and leaves $folder/out and $folder/err.
+# Run `check` with the arguments; sets $code, and leaves the files out and err.
 run() {
     code=0
-    "$program" check "$@" >"$folder/out" 2>"$folder/err" </dev/null || code=$?
+    "$program" check "$@" >out 2>err </dev/null || code=$?
 }
 
 # Complain unless the last run ended with a code and printed nothing on standard output.
 ended_with() {  # name, code
     if ((code != $2)); then
-        fail "$1" "exit code $code instead of $2: $(head -c 600 "$folder/err")"
-    elif [[ -s $folder/out ]]; then
-        fail "$1" "printed on standard output: $(head -c 300 "$folder/out")"
+        fail "$1" "exit code $code instead of $2: $(head -c 600 err)"
+    elif [[ -s out ]]; then
+        fail "$1" "printed on standard output: $(head -c 300 out)"
     else
         return 0
     fi
@@ -36,52 +30,11 @@ expect() {
     shift 3
     run "$@"
     ended_with "$name" "$want_code" || return
-    check "$name" has "$folder/err" "$text"
+    check "$name" has err "$text"
 }
 
-# ---- the table
+# ---- files
 
-# Every case goes into a file and the messages into another file, without the empty line before the next case.
-# "===" stands for the first two lines of most cases.
-head='format: 1\ntime: {end: 1}\n'
-awk -v head="$head" '/^====? / { name = $2; file = name ".yaml"; print name >"names"; if ($1 == "===") printf "%s", head >file; next }
-     name != "" && /^----$/ { file = name ".expected"; next }
-     file ~ /expected$/ && $0 == "" { next }
-     name != "" { print >file }' "$table"
-
-# An error shows the place in the file: of its line up to 100 characters, 50 before the place, and a mark below. NAME.shown
-# has the messages with these.
-mapfile -t names <names
-files=()
-for name in "${names[@]}"; do files+=("$name.yaml" "$name.expected"); done
-awk 'FNR == 1 && FILENAME ~ /yaml$/ { close(shown); delete line; file = shown = FILENAME; sub(/yaml$/, "shown", shown) }
-    FILENAME ~ /yaml$/ { line[FNR] = $0; next }
-    { print >shown }
-    index($0, file ":") == 1 && split($0, part, ":") > 3 {
-        start = part[3] > 51 ? part[3] - 51 : 0
-        excerpt = substr(line[part[2]], start + 1, 100)
-        gsub(/\t/, " ", excerpt)
-        printf "%s\n%*s\n", excerpt, part[3] - start, "^" >shown
-    }' "${files[@]}"
-
-[[ -z ${WRITE-} ]] || sed '/^====\? /,$d' "$table" >written
-for name in "${names[@]}"; do
-    run "$name.yaml"
-    [[ -z ${WRITE-} ]] || { awk -v name="$name" '$2 == name && /^====? /, /^----$/' "$table"; awk -v name="$name.yaml:" 'n-- < 1; index($0, name) == 1 { n = 2 }' "$folder/err"; echo; } >>written
-    ended_with "$name" 2 || continue
-    IFS= read -rd '' want <"$name.shown"
-    IFS= read -rd '' got <"$folder/err"
-    if [[ $got == "$want" ]]; then
-        pass "$name"
-    else
-        fail "$name" "$(diff "$name.shown" "$folder/err")"
-    fi
-done
-[[ -z ${WRITE-} ]] || sed '$d' written >"$table"
-
-# ---- files that are made here
-
-cd "$folder" || exit 2
 printf 'format: 1\ntime: {end: 1}\nfish:\n  - {name: a}\n  - {name: b, start: {position: [0, 2]}}\n' >good.yaml
 repeat() {  # text, count
     yes -- "$1" 2>/dev/null | head -n "$2" | tr -d '\n'
@@ -93,6 +46,27 @@ repeat_line() {  # text, count
 run good.yaml
 if ((code == 0)) && [[ ! -s err ]]; then pass good_case; else fail good_case "exit code $code: $(<err)"; fi
 
+printf 'format: 1\ntime: {end: 1, dt: 2}\nfish: [{nodes: 2}]\n' >two.yaml
+run two.yaml
+if ended_with two_errors 2; then
+    check two_errors cmp err - <<'end'
+two.yaml:2:16: error: time.dt: unknown key; did you mean 'shedding_interval'?
+time: {end: 1, dt: 2}
+               ^
+two.yaml:3:16: error: fish[0].nodes: must be from 4 to 10000, got 2
+fish: [{nodes: 2}]
+               ^
+end
+fi
+cat >on_top.yaml <<'end'
+format: 1
+time: {end: 1}
+fish:
+  - {name: a}
+  - {name: b, control: {law: place, of: a, offset: [1.4, 0.3]}, start: {position: [1.4, 0.3]}}
+  - {name: c, control: {law: place, of: b, offset: [-1.3, -0.3]}, start: {position: [0, 2]}}
+end
+expect a_place_on_top_of_a_fish 2 'error: fish[2] (c) would hold its place on top of fish[0] (a): change control.offset' on_top.yaml
 expect missing_file 4 'no_such.yaml: error: the case file cannot be read: No such file or directory' no_such.yaml
 expect missing_folder 4 'the case file cannot be read' no_such_folder/good.yaml
 expect file_as_folder 4 'the case file cannot be read: Not a directory' good.yaml/case.yaml

@@ -1,5 +1,5 @@
 /* test_case.c: A case takes its values from defaults, presets, included files and assignments, and what is shown of it
- * reads back as the same case. test_sweep.c tests sweeps, and test_bad.sh wrong cases. */
+ * reads back as the same case. test_sweep.c tests sweeps, test_bad_cases.c wrong cases. */
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
