@@ -171,6 +171,7 @@ FIGURES = {
     "real_time": ["scripts/measure/performance.py --picture real_time.png"],
     "keep_together": ["doc/examples/keep_together.py --figure keep_together.png"],
     "hold_place": ["doc/examples/hold_place.py --figure hold_place.png"],
+    "school_stability": ["doc/examples/school_stability.py --table cases/studies/school_stability.csv --figure school_stability.png"],
     "estimate": ["doc/examples/estimate.py --figure estimate.png"],
 }
 # paths in doc/figures without their ending

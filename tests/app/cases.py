@@ -18,7 +18,7 @@ import numpy as np
 program, cases, table, which = sys.argv[1:]
 counts = {"ok": 0, "FAILED": 0, "skipped": 0}
 LONG = ["depth", "start_speed", "stiffness", "stiffness_cost", "added_mass", "plate_stiffness", "steady_resonance",
-        "stiffness_elastic", "step_response", "follower_spacing", "feedback"]  # 5 s to 30 min
+        "stiffness_elastic", "step_response", "follower_spacing", "feedback", "school_stability"]  # 5 s to 30 min
 
 
 def check(name, good, words=""):

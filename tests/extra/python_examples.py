@@ -118,6 +118,41 @@ class Examples(unittest.TestCase):
         self.assertGreater(abs(away[0][-1]), 1)
         self.assertLess(abs(away[1][-1]), 0.1)
 
+    def test_the_threshold_of_a_school_is_the_zero_of_a_line(self):
+        chart = example("school_stability")
+        random = np.random.default_rng(2)
+        heaves, slope, threshold = np.array([0.08, 0.1, 0.12, 0.15, 0.19]), -0.08, 0.13
+
+        def rows(noise, claimed):
+            sizes = 1 + slope * np.log(heaves / threshold) + noise * random.standard_normal(heaves.size)
+            return [{"plates": 4, "heave": heave, "multiplier": size, "error": claimed, "cpu": 1.0} for heave, size in zip(heaves, sizes)]
+
+        np.testing.assert_allclose(chart.threshold_of(rows(0, 0.01))[0], threshold, rtol=1e-9)
+        # errors are twice the standard deviation, and so is the bar: 95 % of the thresholds lie within it
+        inside = [abs(value - threshold) < bar for value, bar in (chart.threshold_of(rows(0.005, 0.01)) for _ in range(400))]
+        self.assertGreater(np.mean(inside), 0.9)
+        # errors that are claimed too small show in the scatter, and widen the bar
+        self.assertGreater(np.median([chart.threshold_of(rows(0.005, 1e-3))[1] for _ in range(40)]), 0.005)
+        # no threshold without states on both sides, but a bound
+        heaves = heaves[3:]
+        self.assertIsNone(chart.threshold_of(rows(0, 0.001)))
+        self.assertEqual(chart.bound_of(rows(0, 0.001)), 0.15)
+        self.assertEqual(next(chart.report(rows(0, 0.001))), "4 plates: stable down to 0.15 m (1 s of CPU time a state)")
+        self.assertIsNone(chart.bound_of(rows(0, 0.5)))
+
+    def test_a_chart_has_the_states_of_two_plates_and_keeps_them(self):
+        chart = example("school_stability")
+        rows = chart.fill([], [2], [0.15], "chart.csv")
+        self.assertEqual([(row["plates"], chart.verdict(row)) for row in rows], [(2, "stable")])
+        # twice as many events and a finer body give 0.903 and a period of 6.4 beats, at 5.06 m
+        self.assertAlmostEqual(rows[0]["multiplier"], 0.903, delta=0.01)
+        self.assertAlmostEqual(rows[0]["period"], 6.4, delta=0.15)
+        self.assertAlmostEqual(rows[0]["places"][1], -5.06, delta=0.05)
+        kept = chart.read_table("chart.csv")
+        chart.state_of = None  # would fail
+        self.assertEqual(len(chart.fill(kept, [2], [0.15], "chart.csv")), 1)
+        chart.draw("chart.png", kept)
+
     def test_the_smoother_of_a_linear_model_is_that_of_bayes(self):
         estimate = example("estimate")
         random = np.random.default_rng(5)
