@@ -106,6 +106,9 @@ test_names   = $(or $(TEST),*)
 c_tests      = $(patsubst tests/%.c,$(B)/tests/%,$(wildcard $(test_names:%=tests/*/test_%.c)))
 shell_tests  = $(filter-out $(if $(TEST),,tests/extra/%) tests/slurm/%,$(wildcard $(test_names:%=tests/*/test_%.sh)))
 extra_tests  = $(wildcard $(test_names:%=tests/extra/test_%.sh))
+# those that take longest begin, so that all processors have work to the end; then the other scripts
+longest      = python error branch steady_formation study command resume results steady_command threshold_command cases
+first_tests  = $(foreach test,$(longest),$(filter %/test_$(test) %/test_$(test).sh,$(c_tests) $(shell_tests)))
 # C tests of more than three seconds, not in make check
 long_c_tests  = contact diagnostics diagnostics_momentum estimate flow_at_markers flow_sources sensor_pressure simulate steady steady_formation take_up tree warnings
 quick_c_tests = $(filter-out $(foreach test,$(long_c_tests),%/test_$(test)),$(c_tests))
@@ -152,7 +155,7 @@ help:  ## this list
 
 test: deps  ## install what is missing, build, test the program (minutes)
 	@$(parallel) tests
-	@scripts/run-tests.sh $(program) $(c_tests) $(shell_tests)
+	@scripts/run-tests.sh $(program) $(first_tests) $(filter-out $(first_tests),$(shell_tests) $(c_tests))
 
 test-extra: deps  ## test documents, studies, the article, figures, site, pages in a browser, files of VTK, manual, packages, faults, classical results
 	@scripts/install-deps.sh @extra @site

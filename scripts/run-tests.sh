@@ -4,9 +4,9 @@
 #   scripts/run-tests.sh PROGRAM TEST...
 #
 # A TEST with the suffix .sh or .py is a script, which gets PROGRAM as its argument and ends with the line "N passed, N failed,
-# N skipped". Any other TEST is a cmocka program. The scripts begin, because they take longest, and one more test runs at a
-# time than there are processors, because some of them wait. The report has the whole output of what failed. A test that
-# crashes, exits early, runs longer than the limit or tests nothing has failed. The limit grows with the load of the machine.
+# N skipped". Any other TEST is a cmocka program. The tests begin in the order given, and one more runs at a time than there
+# are processors, because some of them wait. The report has the whole output of what failed. A test that crashes, exits
+# early, runs longer than the limit or tests nothing has failed. The limit grows with the load of the machine.
 # Each test has a line with its wall and CPU time, and the ten that take most are named at the end.
 # The last line printed is the sum: "N passed, N failed, N skipped".
 set -euo pipefail
@@ -20,9 +20,7 @@ if (($# < 1)); then
 fi
 program=$1
 shift
-tests=()
-for test in "$@"; do [[ $test != *.@(sh|py) ]] || tests+=("$test"); done
-for test in "$@"; do [[ $test == *.@(sh|py) ]] || tests+=("$test"); done
+tests=("$@")
 
 folder=$(mktemp -d)
 stop() {

@@ -1405,7 +1405,7 @@ static void sweep(const char *text, const char *path, int least) {
         shoal_close(other);
         shoal_close(run);
         if (n_live != n_before) fail_msg("allocation %d leaves %d: %s", n, n_live - n_before, shoal_message());
-        n += 1 + n / 50;
+        n += 1 + n / 20;
     }
     AT_LEAST(n, least);
 }
