@@ -4,6 +4,7 @@
 #   tests/app/test_threshold_command.sh PROGRAM
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
+start_python
 
 key='fish[*].body.modulus'
 cat >flag.yaml <<'end'
@@ -49,25 +50,8 @@ run steady flag.yaml --threshold "$key=40000:120000" --json -o flag
 check a_threshold_is_found test "$code" = 0
 cp out flag.json
 check every_state_is_reported test "$(grep -c '^fish.*body.modulus = .*growth' err)" = "$(grep -c '"value"' flag.json)"
-cat >look.py <<'end'
-"""ends: two values just outside of the bar. study: whether the file has all points."""
-import json
-import sys
-import netCDF4
-
-found = json.load(open("flag.json"))
-if sys.argv[1] == "ends":
-    print(found["threshold"] - 2 * found["bar"], found["threshold"] + 2 * found["bar"])
-else:
-    with netCDF4.Dataset("flag/study.nc") as data:
-        values, growth = data["fish_body_modulus"][:], data["steady_growth"][:]
-    points = found["points"]
-    sys.exit(not (found["unstable"] == "below" and found["kind"] == "flutter" and found["by_error"] == 0
-                  and 0 < found["bar"] < 100 and len(values) == len(points)
-                  and all(v == p["value"] and abs(g - p["growth"]) < 1e-8 for v, g, p in zip(values, growth, points))))
-end
-check the_file_has_every_point /usr/bin/python3 look.py study
-read -r below above < <(/usr/bin/python3 look.py ends)
+check the_file_has_every_point python "$root/tests/app/threshold_file.py" study
+read -r below above < <(python "$root/tests/app/threshold_file.py" ends)
 run steady flag.yaml -q --json -o below.nc --set "$key=$below"
 check it_is_unstable_below grep -qE '"steady_growth": [0-9]' out
 run steady flag.yaml -q --json -o above.nc --set "$key=$above"
@@ -86,30 +70,7 @@ end
 run steady course.yaml --threshold 'fish[*].control.gain=1:6' --json -o course -q
 cp out course.json
 for gain in 3.3 3.8; do run run course.yaml -q -o "run$gain.nc" --set "fish[*].control.gain=$gain"; done
-cat >grow.py <<'end'
-"""The threshold lies between a run that decays and one that grows, and its oscillation has the period of the runs."""
-import json
-import sys
-import netCDF4
-import numpy as np
-
-def course(path):
-    """Mean heading of each beat of 1 s, less the desired one, degree."""
-    with netCDF4.Dataset(path) as data:
-        time, heading = np.asarray(data["time"][:]), np.asarray(data["heading"][:, 0])
-    return np.array([((heading[(time >= n) & (time < n + 1)] + 180) % 360 - 180).mean() for n in range(60)])
-
-found = json.load(open("course.json"))
-decays, grows = course("run3.3.nc"), course("run3.8.nc")
-assert np.ptp(decays[50:]) < 0.5 * np.ptp(decays[20:30]), decays
-assert np.ptp(grows[50:]) > 2 * np.ptp(grows[20:30]), grows
-assert found["unstable"] == "above" and found["kind"] == "Neimark-Sacker", found
-assert found["threshold"] - found["bar"] < 3.8 and found["threshold"] + found["bar"] > 3.3, found
-assert 0 < found["by_error"] < found["bar"] < 1, found
-crossings = np.sum(np.diff(np.sign(decays[10:50] - decays[40:].mean())) != 0)
-assert abs(80 / crossings - found["period"]) < 0.3, (crossings, found)
-end
-check runs_decay_and_grow_on_the_two_sides /usr/bin/python3 grow.py
+check runs_decay_and_grow_on_the_two_sides python "$root/tests/app/threshold_runs.py"
 
 # ---- the stable side of a branch ends at a fold: the follower falls back until its place is gone
 

@@ -5,6 +5,7 @@
 #   tests/app/test_trace.sh PROGRAM
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
+start_python
 
 cat >pair.yaml <<'CASE'
 format: 1
@@ -14,10 +15,10 @@ CASE
 
 run run pair.yaml -q -o run.nc --trace trace.csv
 check "run --trace: exit 0" test "$code" = 0
-check "the trace agrees with the totals of the result" /usr/bin/python3 "$root/tests/app/trace_totals.py" trace.csv run.nc
+check "the trace agrees with the totals of the result" python "$root/tests/app/trace_totals.py" trace.csv run.nc
 cp run.nc traced.nc
 run run pair.yaml -q -o run.nc --force
-check "a trace changes no bit" /usr/bin/python3 "$root/tests/run/same_result.py" run.nc traced.nc
+check "a trace changes no bit" python "$root/tests/run/same_result.py" run.nc traced.nc
 refused "an existing file is kept" 4 'the file exists: replace it with --force' run pair.yaml -q -o other.nc --trace trace.csv
 run run pair.yaml -q -o run.nc --trace trace.csv --force
 check "run --trace --force: exit 0" test "$code" = 0
