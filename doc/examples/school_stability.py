@@ -9,7 +9,7 @@ the last one as this is behind its leader. The largest Floquet multiplier of eac
 disturbance grows. The table has a row for each state; a state that it has already is not computed again.
 
 On the way from large amplitudes, the threshold of a school is where its multiplier passes 1, by the line of least squares through
-the four states around it, over the logarithm of the amplitude and weighted by their errors. A school whose multiplier does
+the states around it, over the logarithm of the amplitude and weighted by their errors. A school whose multiplier does
 not pass 1 has only a bound.
 """
 
@@ -27,9 +27,9 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 import shoal  # noqa: E402
 
 CASE = str(pathlib.Path(__file__).resolve().parents[2] / "cases" / "studies" / "school_stability.yaml")
-HEAVES = [0.25, 0.2, 0.175, 0.15, 0.12, 0.1, 0.075]  # m
+HEAVES = [0.3, 0.25, 0.2, 0.175, 0.15, 0.12, 0.1, 0.075]  # m
 LENGTH = 1.0  # m
-BESIDE = 2  # states on each side of a threshold that count for it
+WITHIN = 1.5  # states whose amplitude differs by less than this factor from a crossing count for the threshold
 LEAST_ERROR = 1e-3  # of a multiplier: two states without noise are no better known
 SPEED, EXPONENT = 3.87, 1.55  # m s-1 at a heave of 0.15 m, and how it grows with the heave: a start of the search
 COLUMNS = ["plates", "heave", "speed", "multiplier", "error", "period", "cpu", "places"]
@@ -107,7 +107,8 @@ def threshold_of(rows):
     first = next((i for i in range(1, len(rows)) if sizes[i - 1] < 1 <= sizes[i]), None)
     if first is None:
         return None
-    near = rows[max(0, first - BESIDE):first + BESIDE]
+    middle = np.sqrt(rows[first - 1]["heave"] * rows[first]["heave"])
+    near = [row for row in rows if 1 / WITHIN < row["heave"] / middle < WITHIN]
     excess = np.array([row["multiplier"] - 1 for row in near])
     error = np.array([max(row["error"], LEAST_ERROR) for row in near])
     way = np.log([row["heave"] for row in near])
@@ -155,8 +156,10 @@ def report(rows):
     for n in sorted({row["plates"] for row in rows}):
         of_n = [row for row in rows if row["plates"] == n]
         found, bound = threshold_of(of_n), bound_of(of_n)
+        is_none = all(verdict(row) == "none" for row in of_n)
         words = f"threshold {found[0]:.3f} +- {found[1]:.3f} m" if found else f"stable down to {bound:g} m" if bound else "undecided"
-        yield f"{n} plates: {words} ({sum(row['cpu'] for row in of_n) / len(of_n):.0f} s of CPU time a state)"
+        words = "no steady state was found" if is_none else words
+        yield f"{n} plates: {words} ({np.nanmean([row['cpu'] for row in of_n]):.0f} s of CPU time a state)"
 
 
 def draw(path, rows):
@@ -182,6 +185,8 @@ def draw(path, rows):
             left.plot(*np.transpose(bounds), "v", color="black", ms=4, ls="", label="stable down to here")
         for n, some in schools.items():
             some = [row for row in some if np.isfinite(row["multiplier"])]
+            if not some:
+                continue
             right.errorbar([row["heave"] for row in some], [row["multiplier"] for row in some], [row["error"] for row in some],
                            fmt="o-", ms=2.5, lw=0.8, capsize=2, color=pyplot.get_cmap("viridis")((n - 2) / 6.5), label=str(n))
         left.set(xlabel="plates in line", ylabel="amplitude of the heave [m]", xticks=list(schools))
@@ -197,8 +202,8 @@ def draw(path, rows):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--plates", type=int, nargs="+", default=[2, 3, 4, 5], metavar="N", help="numbers of plates (2 to 5)")
-    parser.add_argument("--heaves", type=float, nargs="+", default=HEAVES, metavar="HEAVE", help="amplitudes, m (0.25 to 0.075)")
+    parser.add_argument("--plates", type=int, nargs="+", default=[2, 3, 4, 5, 6], metavar="N", help="numbers of plates (2 to 6)")
+    parser.add_argument("--heaves", type=float, nargs="+", default=HEAVES, metavar="HEAVE", help="amplitudes, m (0.3 to 0.075)")
     parser.add_argument("--table", default="school_stability.csv", metavar="FILE", help="of all states; it may have some already (school_stability.csv)")
     parser.add_argument("--figure", metavar="PICTURE", help="draw the chart")
     options = parser.parse_args()
