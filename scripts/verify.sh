@@ -11,7 +11,7 @@ set -euo pipefail
 export LC_ALL=C
 
 readonly sections=(theory rod force sheet wake plate school interval symmetry start energy momentum fish control pressure
-    depth encounters skin elastic coupled steady static tandem walls validation)
+    depth encounters skin elastic coupled steady static tandem growth walls validation)
 readonly at_once=2
 
 if (($# < 2 || $# > 3)); then

@@ -11,7 +11,7 @@ verify=$(dirname "$program")/verify/verify
 cd "$root" || exit 2  # some checks run the cases of the tree
 
 for section in theory rod force sheet wake plate school interval symmetry start energy momentum fish control pressure \
-    depth encounters skin elastic coupled steady static tandem walls validation; do
+    depth encounters skin elastic coupled steady static tandem growth walls validation; do
     code=0
     : >"$folder/table"
     "$verify" "$section" --fast -o "$folder/table" >"$folder/out" 2>&1 </dev/null || code=$?

@@ -38,6 +38,7 @@ static const struct {
                 {"steady", verify_steady},
                 {"static", verify_static},
                 {"tandem", verify_tandem},
+                {"growth", verify_growth},
                 {"walls", verify_walls},
                 {"validation", verify_validation}};
 

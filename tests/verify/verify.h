@@ -33,6 +33,7 @@ void verify_coupled(void);
 void verify_steady(void);
 void verify_static(void);
 void verify_tandem(void);
+void verify_growth(void);
 void verify_walls(void);
 void verify_validation(void);
 
