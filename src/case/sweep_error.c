@@ -224,35 +224,64 @@ static bool is_input(const char *name, const char *path) {
 }
 
 /* Add an input by its name. */
-static void read_input(struct sweep_error *error, const char *name, double uncertainty, struct yaml_mark mark,
+static void read_input(const struct case_values *values, const char *name, double uncertainty, struct yaml_mark mark,
                        const char *place, struct yaml_errors *errors) {
+    struct sweep_error *const error = values->error;
     struct text known = {.arena = errors->arena}, found = {.arena = errors->arena};
     const struct sweep_error_key *key = NULL;
+
+    // fish[follower].wave.amplitude is the number of that fish, fish[*].wave.amplitude that of all in proportion
+    const char *const end = strncmp(name, "fish[", 5) == 0 ? strchr(name, ']') : NULL;
+    const bool is_of_one = end && end[1] == '.' && name[5] != '*';
+    int fish = -1;
+    if (is_of_one) {
+        int number, length = 0;
+        fish = school_find_fish(&values->school, name + 5, (size_t)(end - name - 5));
+        const bool is_number = sscanf(name, "fish[%d]%n", &number, &length) == 1 && name + length == end + 1;
+        if (fish < 0 && is_number && number >= 0 && number < values->school.n_fish) fish = number;
+        if (fish < 0) yaml_errors_add(errors, mark, "%s: '%.60s': there is no such fish", place, name);
+        if (fish < 0) return;
+    }
+
     int n_found = 0;
     for (int i = 0; i < SWEEP_N_INPUTS; i++) {
         const char *const path = sweep_inputs[i].path;
-        text_add(&known, "%s%s", i > 0 ? ", " : "", path + (strncmp(path, "fish.", 5) == 0 ? 5 : 0));
-        if (!is_input(name, path)) continue;
-        text_add(&found, "%s%s", n_found++ > 0 ? " and " : "", path + (strncmp(path, "fish.", 5) == 0 ? 5 : 0));
+        const bool is_of_fish = strncmp(path, "fish.", 5) == 0;
+        text_add(&known, "%s%s", i > 0 ? ", " : "", path + (is_of_fish ? 5 : 0));
+        if (is_of_one ? !is_of_fish || !is_input(end + 2, path) : !is_input(name, path)) continue;
+        text_add(&found, "%s%s", n_found++ > 0 ? " and " : "", path + (is_of_fish ? 5 : 0));
         key = &sweep_inputs[i];
     }
     if (n_found > 1) {
         yaml_errors_add(errors, mark, "%s: '%.60s' is the end of several keys: %s", place, name, found.text);
     } else if (n_found == 0) {
-        const bool is_one = strncmp(name, "fish[", 5) == 0 && name[5] != '*';
-        yaml_errors_add(errors, mark, "%s: '%.60s' is no such number%s; these are: %s", place, name,
-                        is_one ? ": fish[*] varies that of all fish in proportion" : "", known.text);
+        yaml_errors_add(errors, mark, "%s: '%.60s' is no such number; these are: %s", place, name, known.text);
     }
     if (n_found != 1) return;
+    if (is_of_one && values->school.n_fish > 1) {
+        struct sweep_error_key *one;
+        NEW(values->arena, one, 1);
+        *one = *key;
+        one->fish = fish;
+        one->name = arena_text(values->arena, "fish[%s]%s", values->school.fish[fish].name, key->path + 4);
+        key = one;
+    }
     for (int i = 0; i < error->n_inputs; i++) {
-        if (error->input[i].key == key) yaml_errors_add(errors, mark, "%s: '%s' is there twice", place, key->path);
+        if (strcmp(sweep_error_name(error->input[i].key), sweep_error_name(key)) != 0) continue;
+        yaml_errors_add(errors, mark, "%s: '%s' is there twice", place, sweep_error_name(key));
+    }
+    if (error->n_inputs == SWEEP_N_INPUTS) {
+        yaml_errors_add(errors, mark, "%s: more than %d keys", place, SWEEP_N_INPUTS);
+        return;
     }
     error->input[error->n_inputs++] = (struct sweep_error_input){key, uncertainty};
 }
 
 /* Read "sensitivity": true, a key, or a list of keys; and "uncertain": a map of keys and parts of them. */
-static void read_inputs(struct arena *arena, struct sweep_error *error, const struct yaml_node *sensitivity,
+static void read_inputs(const struct case_values *values, const struct yaml_node *sensitivity,
                         const struct yaml_node *uncertain, struct yaml_errors *errors) {
+    struct arena *const arena = values->arena;
+    struct sweep_error *const error = values->error;
     static const char of_sensitivity[] = "error.sensitivity", of_uncertain[] = "error.uncertain";
     if (sensitivity && sensitivity->kind == YAML_SCALAR &&
         (strcmp(sensitivity->text, "true") == 0 || strcmp(sensitivity->text, "false") == 0)) {
@@ -267,7 +296,7 @@ static void read_inputs(struct arena *arena, struct sweep_error *error, const st
             if (name->kind != YAML_SCALAR) {
                 yaml_errors_add(errors, name->mark, "%s: expects true, a key or a list of keys", of_sensitivity);
             } else {
-                read_input(error, name->text, NAN, name->mark, of_sensitivity, errors);
+                read_input(values, name->text, NAN, name->mark, of_sensitivity, errors);
             }
         }
         if (n == 0) yaml_errors_add(errors, sensitivity->mark, "%s: expects at least one key", of_sensitivity);
@@ -296,7 +325,7 @@ static void read_inputs(struct arena *arena, struct sweep_error *error, const st
                             "%s: the uncertainty of '%.60s' is a part of it above 0, such as 5%% or 0.05", of_uncertain,
                             entry->key);
         } else {
-            read_input(error, entry->key, part, entry->mark, of_uncertain, errors);
+            read_input(values, entry->key, part, entry->mark, of_uncertain, errors);
         }
     }
 }
@@ -337,7 +366,7 @@ void sweep_error_read(struct case_values *values, const struct yaml_node *root, 
     error->models = models && yaml_tree_boolean(models, "error.models", errors);
     if (keys) read_keys(values->arena, error, keys, errors);
     if (against) read_against(values, error, against, errors);
-    read_inputs(values->arena, error, yaml_tree_find(map, "sensitivity"), yaml_tree_find(map, "uncertain"), errors);
+    read_inputs(values, yaml_tree_find(map, "sensitivity"), yaml_tree_find(map, "uncertain"), errors);
     if (error->sensitivity && values->n_axes > 0) {
         yaml_errors_add(errors, map->mark, "error.sensitivity: is that of one case: remove sensitivity or sweep");
     }
@@ -405,7 +434,8 @@ void sweep_error_write(struct text *text, const struct sweep_error *error) {
     for (int i = 0; i < error->n_inputs; i++) {
         const struct sweep_error_input *const input = &error->input[i];
         const char *const first = error->sensitivity ? ", sensitivity: [" : ", uncertain: {";
-        text_add(text, "%s%s", i == 0 ? first : ", ", input->key->path);
+        const char *const quote = input->key->name ? "\"" : "";
+        text_add(text, "%s%s%s%s", i == 0 ? first : ", ", quote, sweep_error_name(input->key), quote);
         if (error->sensitivity) continue;
         text_add(text, ": ");
         text_add_number(text, input->uncertainty);

@@ -3,7 +3,7 @@
  *
  *     error: {of: [steady_speed, steady_cost_of_transport], within: 0.01, keys: default, confirm: true, models: false}
  *     error: {of: steady_cost_of_transport, against: alone.yaml}     or first, 1e5, follower=leader
- *     error: {of: steady_cost_of_transport, sensitivity: true}           or [modulus, wave.frequency]
+ *     error: {of: steady_cost_of_transport, sensitivity: true}           or [modulus, "fish[follower].wave.amplitude"]
  *     error: {of: steady_cost_of_transport, uncertain: {modulus: 20%, drag.transition: 0.5}}
  *
  * How it is evaluated: study/error_plan.h and doc/studies.md. */
@@ -35,7 +35,14 @@ struct sweep_error_key {
     double level[2];          /* (n_levels) */
     const char *switch_path;  /* the key that must have the value of the switch; NULL: none */
     int switch_value;
+    const char *name; /* of an input of one fish: "fish[follower].wave.amplitude"; NULL: of all fish in proportion */
+    int fish;         /* that fish */
 };
+
+/* How a key is called: its name, or its path. */
+static inline const char *sweep_error_name(const struct sweep_error_key *key) {
+    return key->name ? key->name : key->path;
+}
 
 enum { SWEEP_N_ERROR_KEYS = 20 };
 extern const struct sweep_error_key sweep_error_keys[SWEEP_N_ERROR_KEYS];

@@ -82,9 +82,14 @@ static int n_all_points(const struct error_sweep *sweep) {
     return sweep->n_points + (sweep->against != NULL);
 }
 
-/* Whether one column serves all fish: the fish have equal values at every point, and no single fish is swept. */
+/* Whether one column serves all fish: the fish have equal values at every point, and no single fish is swept, nor is
+ * its number an input. */
 static bool is_of_all_fish(const struct error_sweep *sweep, const char *path) {
     const struct sweep_axis *const axis = &sweep->study.sweep[0];
+    const struct sweep_error *const error = sweep->study.error;
+    for (int i = 0; i < error->n_inputs; i++) {
+        if (error->input[i].key->name && strcmp(error->input[i].key->path, path) == 0) return false;
+    }
     for (int c = 0; c < axis->n_keys; c++) {
         if (strcmp(axis->key[c].row, path) == 0 && fish_of(&axis->key[c]) >= 0) return false;
     }
@@ -161,7 +166,7 @@ static double input_level(double value, int i) {
 
 // the frequency of a beat: the times that are parts of the beat change with it
 static bool moves_beat(const struct sweep_error_key *row) {
-    return row->kind == SWEEP_INPUT && strcmp(strrchr(row->path, '.'), ".frequency") == 0;
+    return row->kind == SWEEP_INPUT && !row->name && strcmp(strrchr(row->path, '.'), ".frequency") == 0;
 }
 
 /* The row of the case of a point with some changes. */
@@ -190,7 +195,9 @@ static struct row make_row(const struct error_study *study, int n, const struct 
         const double finest = fmax(change->value, key->n_levels > 0 ? key->value[0] : 0);
         const double nodes_part = fmax(1, finest / plan_number_of(values, "fish.nodes", 0));
         for (int f = 0; f < n_owners(values, path); f++) {
-            const double value = f == 0 || is_choice ? change->value : part * plan_number_of(values, path, f);
+            const bool is_of_one = key->row->name != NULL, is_itself = f == 0 || is_choice || is_of_one;
+            if (is_of_one && f != key->row->fish) continue;
+            const double value = is_itself ? change->value : part * plan_number_of(values, path, f);
             row_set(&row, path, f, key->row->kind == SWEEP_POINTS ? round(value) : value);
             if (!are_nodes) continue;
             const double nodes = round(nodes_part * plan_number_of(values, "fish.nodes", f));
@@ -457,7 +464,7 @@ static bool is_used(const struct error_study *study, const struct sweep_error_ke
 /* Whether an input with this value affects the results of this case. */
 static bool is_used_input(const struct error_study *study, const struct sweep_error_key *row, double value) {
     const struct case_values *const values = study->values;
-    const struct fish_parameters *const fish = &values->school.fish[0];
+    const struct fish_parameters *const fish = &values->school.fish[row->name ? row->fish : 0];
     const char *const path = row->path;
     const bool is_held = fish->motion.prescribed != PRESCRIBED_NONE;
     if (!(fabs(value) > 0) || !isfinite(value)) return false;
@@ -482,8 +489,10 @@ static bool is_used_input(const struct error_study *study, const struct sweep_er
 }
 
 /* The value of an input; of a factor that follows from the body, that of the first fish of a school of one. */
-static double input_value(const struct error_study *study, const struct school *school, const char *path) {
-    const double value = plan_number_of(study->values, path, 0);
+static double input_value(const struct error_study *study, const struct school *school,
+                          const struct sweep_error_key *row) {
+    const char *const path = row->path;
+    const double value = plan_number_of(study->values, path, row->name ? row->fish : 0);
     if (!isnan(value) || study->n_fish > 1) return value;
     if (strcmp(path, "fish.drag.form") == 0) return school->fish->form;
     return strcmp(path, "fish.drag.waving") == 0 ? school->fish->waving : value;
@@ -496,15 +505,20 @@ static enum status choose_inputs(struct error_study *study, const struct school 
     const bool are_all = error->sensitivity && error->n_inputs == 0;
     for (int i = 0; i < (are_all ? SWEEP_N_INPUTS : error->n_inputs); i++) {
         const struct sweep_error_key *const row = are_all ? &sweep_inputs[i] : error->input[i].key;
-        const double value = input_value(study, school, row->path);
+        if (row->name && row->fish >= study->n_fish) continue;  // the other case has fewer fish
+        const double value = input_value(study, school, row);
         for (int c = 0; c < study->sweep->n_swept; c++) {
             if (strcmp(axis->key[c].row, row->path) != 0 || are_all) continue;
             return status_fail(STATUS_CASE, "error: %s is swept: its sensitivity is that of the points", row->path);
         }
+        if (row->name && study->is_steady && strstr(row->path, ".frequency")) {
+            return status_fail(STATUS_CASE, "error: %s: a steady state needs one frequency: vary that of all fish",
+                               row->name);
+        }
         if (!is_used_input(study, row, value)) {
             if (are_all || study->is_against) continue;
             return status_fail(
-                STATUS_CASE, "error.%s: %s %s", error->sensitivity ? "sensitivity" : "uncertain", row->path,
+                STATUS_CASE, "error.%s: %s %s", error->sensitivity ? "sensitivity" : "uncertain", sweep_error_name(row),
                 fabs(value) > 0 ? "changes nothing in this case" : "is 0 or not given: parts of it have no meaning");
         }
         struct error_study_key *const key = &study->key[study->n_keys++];

@@ -16,9 +16,9 @@
  *     all keys               x                    x                    x
  *     nodes and interval            x      x             x      x                 others: from 0, 3, 6
  *
- * An input, a number of the case, has levels at both sides of the stated value, or on one side if the other is out of
- * its range. They give the derivative of each quantity (convergence.h), for a table of sensitivities or, times the
- * uncertainty of the number, for the error.
+ * An input, a number of the case or of one of its fish, has levels at both sides of the stated value, or on one side if
+ * the other is out of its range. They give the derivative of each quantity (convergence.h), for a table of
+ * sensitivities or, times the uncertainty of the number, for the error.
  *
  * With `against` every value is also compared with that of a twin: of another case, of another point of the sweep, or
  * of another fish of the same run. The twin varies the same keys by the same factors. Ratio and difference are

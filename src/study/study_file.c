@@ -357,7 +357,7 @@ static struct value error_value(const struct contents *contents, const struct va
     }
     const int n_levels = key ? key->n_levels : 0;
     switch (v->row) {
-        case KEY_NAME: return (struct value){.text = row->path};
+        case KEY_NAME: return (struct value){.text = sweep_error_name(row)};
         case KEY_IS_CHOICE:
             return (struct value){.number = row->kind == SWEEP_MODEL ? 1 : row->kind == SWEEP_INPUT ? 2 : 0};
         case KEY_DESIGN_ORDER: return (struct value){.number = sweep_error_order(contents->study, row)};
@@ -470,9 +470,13 @@ enum status study_file_write(struct arena *arena, const char *path, const struct
     if (errors) {
         if (errors->n_swept > 0) length[BY_POINT] = (size_t)errors->n_points;
         length[BY_KEY_LEVEL] = ERROR_STUDY_LEVELS;
-        for (int i = 0; i < ERROR_STUDY_KEYS; i++) {
-            const struct sweep_error_key *const row =
-                i < SWEEP_N_ERROR_KEYS ? &sweep_error_keys[i] : &sweep_inputs[i - SWEEP_N_ERROR_KEYS];
+        // the keys of the table, and those of one fish
+        const struct sweep_error *const error = errors->study.error;
+        for (int i = 0; i < ERROR_STUDY_KEYS + error->n_inputs; i++) {
+            const struct sweep_error_key *const row = i < SWEEP_N_ERROR_KEYS ? &sweep_error_keys[i]
+                                                      : i < ERROR_STUDY_KEYS ? &sweep_inputs[i - SWEEP_N_ERROR_KEYS]
+                                                                             : error->input[i - ERROR_STUDY_KEYS].key;
+            if (i >= ERROR_STUDY_KEYS && !row->name) continue;
             bool is_varied = false;
             for (int p = 0; p < errors->n_points; p++) {
                 const struct error_study *const point = &errors->point[p];

@@ -588,7 +588,7 @@ enum status study_print_plan(const struct error_sweep *sweep, int n_processes, c
                 text_add(&times, "%s%.2g", times.length > 0 ? " " : "", duration[key->member[i]]);
             }
             if (sweep->n_points > 1) table_cell(table, "%d", p);
-            table_cell(table, "%s", key->row->path);
+            table_cell(table, "%s", sweep_error_name(key->row));
             table_cell(table, "%s", levels);
             table_cell(table, "%s", members.text ? members.text : "not varied");
             table_cell(table, "%s", times.text ? times.text : "");
@@ -685,7 +685,8 @@ static void print_value(const struct error_study *study, int q, int f, FILE *str
         }
         if (models[i]->key < 0) continue;
         const struct error_study_key *const key = &study->key[models[i]->key];
-        const char *const path = key->row->path + (strncmp(key->row->path, "fish.", 5) == 0 ? 5 : 0);
+        const char *const path =
+            sweep_error_name(key->row) + (strncmp(sweep_error_name(key->row), "fish.", 5) == 0 ? 5 : 0);
         fprintf(stream, " (%s %s)", path, level_text(study, key, models[i]->level));
     }
     fprintf(stream, "\n");
@@ -764,7 +765,7 @@ static void print_shares(const struct error_study *study, const struct error_stu
         if (key->slope) {
             snprintf(levels, LEVEL_BYTES, "%.4g +- %.3g %%", key->value[key->stated], 100 * key->uncertainty);
         }
-        table_cell(table, "%s", key->row->path);
+        table_cell(table, "%s", sweep_error_name(key->row));
         table_cell(table, "%s", levels);
         for (int q = 0; q < study->n_asked; q++) {
             const int place = error_plan_place(study, q, f);
@@ -865,7 +866,7 @@ static void print_sensitivities(const struct error_study *study, FILE *stream) {
         for (int i = 0; i < n; i++) {
             const struct error_study_key *const key = &study->key[order[i]];
             const char *const unit = case_table_row(key->row->path)->unit;
-            table_cell(table, "%s", key->row->path);
+            table_cell(table, "%s", sweep_error_name(key->row));
             table_cell(table, "%.4g%s%s", key->value[key->stated], *unit ? " " : "", unit);
             table_cell(table, "%s", steps_text(study, key));
             for (int q = 0; q < study->n_asked; q++) {
@@ -915,7 +916,8 @@ static void print_reasons(const struct error_study *study, const struct member_f
     for (int k = 0; k < study->n_keys; k++) {
         const struct error_study_key *const key = &study->key[k];
         const bool is_known = study->relation != ERROR_VALUE && study->point->key[k].n_levels == 1;
-        if (key->n_levels == 1 && !is_known) fprintf(stream, "not varied: %s: %s\n", key->row->path, key->objection);
+        if (key->n_levels == 1 && !is_known)
+            fprintf(stream, "not varied: %s: %s\n", sweep_error_name(key->row), key->objection);
         if (key->n_levels == 1 || key->row->kind == SWEEP_MODEL) continue;
         if (key->n_left_out > 0) {
             fprintf(stream, "left out: %s %.4g%s: too few for the shedding_interval\n", key->row->path,
@@ -1030,7 +1032,7 @@ static void print_points(const struct error_sweep *sweep, const struct member_fi
         }
         if (!missing) continue;
         fprintf(stream, "the errors of %d point%s, the first is %d, do not include %s: %s\n", n_missing,
-                n_missing > 1 ? "s" : "", first_missing, missing->row->path, missing->objection);
+                n_missing > 1 ? "s" : "", first_missing, sweep_error_name(missing->row), missing->objection);
     }
     bool are_shared = false;
     for (int p = 0; p < sweep->n_points; p++) are_shared |= !sweep->point[p].is_full;
@@ -1165,22 +1167,23 @@ static void write_csv_rows(const struct error_sweep *sweep, FILE *file) {
                 write_levels(study, key, levels);
                 if (is_missing(key)) {
                     snprintf(reason, CONVERGENCE_BYTES, "not varied: %.200s", key->objection);
-                    write_csv_row(&row, "", key->row->path, levels, study->value[place], NAN, NAN, reason);
+                    write_csv_row(&row, "", sweep_error_name(key->row), levels, study->value[place], NAN, NAN, reason);
                 }
                 if (key->n_levels == 1) continue;
                 if (key->slope) {
                     const struct convergence_slope slope = key->slope[place];
-                    write_csv_row(&row, "sensitivity_", key->row->path, levels, slope.value, NAN, slope.error, "");
+                    write_csv_row(&row, "sensitivity_", sweep_error_name(key->row), levels, slope.value, NAN,
+                                  slope.error, "");
                     if (isnan(key->uncertainty)) continue;
-                    write_csv_row(&row, "", key->row->path, levels, study->value[place], NAN, key->part[place].error,
-                                  of_input);
+                    write_csv_row(&row, "", sweep_error_name(key->row), levels, study->value[place], NAN,
+                                  key->part[place].error, of_input);
                     continue;
                 }
                 study_print_reason(study, key, place, reason);
                 const char *const verdict = key->row->kind == SWEEP_MODEL ? of_model
                                             : *reason                     ? reason
                                                                           : convergence_words(key->part[place].verdict);
-                write_csv_row(&row, "", key->row->path, levels, study->value[place], key->part[place].order,
+                write_csv_row(&row, "", sweep_error_name(key->row), levels, study->value[place], key->part[place].order,
                               key->part[place].error, verdict);
             }
 

@@ -208,8 +208,25 @@ refused a_run_has_no_search 2 '--from table: starts a search' error swimmer.yaml
 run error swimmer.yaml --of steady_speed --sensitivity=modulus --from swims/member-0000.nc --set error=none \
     --set time.shedding_interval=0.05 -o again
 check a_start_changes_no_more_than_the_errors python "$root/tests/study/started.py"
+# numbers of one fish: the changes by those of each fish add to that by those of all
+cat >two.yaml <<'end'
+format: 1
+time: {end: 2, shedding_interval: 0.05}
+defaults: {fish: {force: reactive, nodes: 9, sheet_points: 17, start: {speed: 0.7}}}
+fish: [{name: one}, {name: two, start: {position: [1.2, 0.1]}, wave: {amplitude: 0.35}}]
+end
+run error two.yaml --of cost_of_transport --sensitivity='wave.amplitude,fish[one].wave.amplitude,fish[1].wave.amplitude' -o apart
+for fish in one two; do
+    check "the_fish_of_a_school_add_up_for_$fish" python "$root/tests/study/sums.py" apart "$fish/cost_of_transport" 0 \
+        fish.wave.amplitude=1 'fish[one].wave.amplitude=-1' 'fish[two].wave.amplitude=-1'
+done
+check a_fish_keeps_its_own_value eval 'grep -q "^fish\[two\].wave.amplitude  *0.35 rad " out'
+refused one_frequency_of_a_beat 2 'fish[two].wave.frequency: a steady state needs one frequency: vary that of all fish' \
+    error two.yaml --of steady_speed '--sensitivity=fish[two].wave.frequency' --set steady.formation=true
+refused the_same_fish_twice 2 "'fish[two].body.modulus' is there twice" \
+    error two.yaml --of speed '--sensitivity=fish[1].modulus,fish[two].body.modulus'
 refused no_such_number 2 "error.sensitivity: 'nodes' is no such number; these are: length, " error foil.yaml --of steady_lift --sensitivity=nodes
-refused one_fish_of_all 2 'fish[*] varies that of all fish in proportion' error foil.yaml --of steady_lift '--sensitivity=fish[0].length'
+refused no_such_fish 2 "'fish[1].length': there is no such fish" error foil.yaml --of steady_lift '--sensitivity=fish[1].length'
 refused several_keys_end_so 2 "'smoothing' is the end of several keys: wake.smoothing and sheet.smoothing" error foil.yaml --of steady_lift --sensitivity=smoothing
 refused part_of_nothing 2 'fish.wave.amplitude is 0 or not given' error foil.yaml --of steady_lift --sensitivity=amplitude
 refused one_or_the_other 2 'sensitivity gives no error bar: remove one' error foil.yaml --of steady_lift --sensitivity --uncertain modulus=5%
