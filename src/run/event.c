@@ -17,6 +17,8 @@ struct event *event_create(struct arena *arena, const struct school *school) {
     NEW(arena, event, 1);
     NEW(arena, event->has_kink, school->n_fish);
     NEW(arena, event->lost, school->n_fish);
+    NEW(arena, event->thinning, school->n_fish);
+    event->arena = arena;
     return event;
 }
 
@@ -216,9 +218,10 @@ enum status event_water(struct state *state, struct residual *residual, struct i
     for (int f = 0; f < school->n_fish; f++) {
         struct wake *const wake = &state->wake[f];
         wake_reserve(wake, wake->n_vortex + wake->n_old);
+        impulse_thinning_reserve(event->arena, &event->thinning[f], wake);
     }
 #pragma omp parallel for num_threads(threads) schedule(static)
-    for (int f = 0; f < school->n_fish; f++) event->lost[f] = impulse_thin_wake(school, state, f);
+    for (int f = 0; f < school->n_fish; f++) event->lost[f] = impulse_thin_wake(school, state, f, &event->thinning[f]);
 
     // the water has new velocities
     if (event->jumps) TRY(initial_conditions_solve(initial, &residual_run, state->t, state->y, state->yp));

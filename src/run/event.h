@@ -19,7 +19,9 @@
 
 /* What an event did, for the observers and for the integrator. */
 struct event {
-    bool jumps;                   /* the unknowns are discontinuous */
+    struct arena *arena;
+    struct impulse_thinning *thinning; /* workspace                                                        (n_fish) */
+    bool jumps;                        /* the unknowns are discontinuous */
     bool *has_kink;               /* whether the control has a new rate, so that powers are discontinuous  (n_fish) */
     struct impulse_moments *lost; /* what the wake lost when old vortices and markers went                 (n_fish) */
 };

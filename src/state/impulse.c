@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <string.h>
 
 #include "wake/stretch.h"
 
@@ -72,13 +73,17 @@ static void stretch_circulations(const struct window *window, const struct wake 
     }
 }
 
-/* Add factor times a wake at the time t + tau, with some strengths less others. */
-static void impulse_add_wake(struct impulse_moments *sum, const struct wake *wake, const struct school *school,
-                             double t, double tau, struct strengths of, struct strengths less_of, double factor) {
+/* Add factor times a wake at the time t + tau, with some strengths less others, without the sources to leave out, NULL:
+ * none. */
+static void impulse_add_wake(struct impulse_moments *sum, const struct wake *wake, const bool *left_out,
+                             const struct school *school, double t, double tau, struct strengths of,
+                             struct strengths less_of, double factor) {
     const bool is_change = less_of.exist;
     struct stretch_form form;
     struct window window = {.next = 0};
     for (int j = 0; j < wake_n_sources(wake); j++) {
+        if (left_out && left_out[j]) continue;
+
         // what does not decay does not change: nothing from the oldest marker of this stretch on
         const int oldest = wake->has_markers && j > 0 ? j - 1 : j;
         if (is_change && !(wake_strength_within(school, t - wake->birth[oldest], 1) < 1)) return;
@@ -94,6 +99,7 @@ static void impulse_add_wake(struct impulse_moments *sum, const struct wake *wak
 
         double strength[STRETCH_MARKERS], less[STRETCH_MARKERS] = {0};
         stretch_set_form(&form, wake, school, j);
+        if (window.next < form.first) window.next = form.first;
         window_move(&window, wake, school, form.first + form.n, t, tau, (const struct strengths[]){of, less_of});
         stretch_circulations(&window, wake, school, j, &form, t, of, 0, strength);
         if (is_change) stretch_circulations(&window, wake, school, j, &form, t, less_of, 1, less);
@@ -106,13 +112,13 @@ static void impulse_add_wake(struct impulse_moments *sum, const struct wake *wak
 
 struct impulse_moments impulse_of_wake(const struct wake *wake, const struct school *school, double t, double tau) {
     struct impulse_moments sum = {0};
-    impulse_add_wake(&sum, wake, school, t, tau, strengths_at(tau / school->interval), nothing, 1);
+    impulse_add_wake(&sum, wake, NULL, school, t, tau, strengths_at(tau / school->interval), nothing, 1);
     return sum;
 }
 
 double impulse_lost_circulation(const struct wake *wake, const struct school *school, double t, double tau) {
     struct impulse_moments lost = {0};
-    impulse_add_wake(&lost, wake, school, t, tau, undecayed, strengths_at(tau / school->interval), 1);
+    impulse_add_wake(&lost, wake, NULL, school, t, tau, undecayed, strengths_at(tau / school->interval), 1);
     return wake->removed + lost.circulation;
 }
 
@@ -155,8 +161,8 @@ void impulse_fade(const struct school *school, struct state *state, int f) {
 
     // lost moments: mean of the positions at the beginning and at the end of the interval
     const struct strengths first = strengths_at(0), last = strengths_at(1);
-    impulse_add_wake(&lost, wake, school, state->t, 0, first, last, 0.5);
-    impulse_add_wake(&lost, wake, school, state->t, school->interval, first, last, 0.5);
+    impulse_add_wake(&lost, wake, NULL, school, state->t, 0, first, last, 0.5);
+    impulse_add_wake(&lost, wake, NULL, school, state->t, school->interval, first, last, 0.5);
 
     // the tail: newest marker at the beginning of the interval, node of y at the end
     const double end[2] = {state->y[fish->at.x + fish->n_nodes - 1], state->y[fish->at.y + fish->n_nodes - 1]};
@@ -165,21 +171,88 @@ void impulse_fade(const struct school *school, struct state *state, int f) {
     book_loss(school, state, f, &lost, (const double[]){(start[0] + end[0]) / 2, (start[1] + end[1]) / 2});
 }
 
-struct impulse_moments impulse_thin_wake(const struct school *school, struct state *state, int f) {
-    struct wake *const wake = &state->wake[f];
+void impulse_thinning_reserve(struct arena *arena, struct impulse_thinning *thinning, const struct wake *wake) {
+    if (wake->capacity <= thinning->capacity) return;
+    thinning->capacity = wake->capacity;
+    double **const copies[] = {&thinning->x, &thinning->y, &thinning->circulation, &thinning->birth};
+    for (size_t i = 0; i < sizeof copies / sizeof *copies; i++) GROW(arena, *copies[i], wake->capacity);
+    GROW(arena, thinning->after, wake->capacity);
+    for (int i = 0; i < 2; i++) GROW(arena, thinning->is_same[i], wake->capacity);
+}
+
+static bool is_same(double one, double other) {
+    return !(fabs(one - other) > 0);
+}
+
+// find vortices that are in both wakes, where births are in the same order
+static void find_partners(const struct wake *before, const struct wake *after, int *partner) {
+    for (int i = 0; i < before->n_vortex; i++) partner[i] = -1;
+    for (int i = 0, k = 0; i < before->n_vortex && k < after->n_vortex;) {
+        if (is_same(before->birth[i], after->birth[k])) {
+            const bool is_pair = is_same(before->x[i], after->x[k]) && is_same(before->y[i], after->y[k]) &&
+                                 is_same(before->circulation[i], after->circulation[k]);
+            partner[i++] = is_pair ? k : -1;
+            k++;
+        } else if (before->birth[i] < after->birth[k]) {
+            i++;
+        } else {
+            k++;
+        }
+    }
+}
+
+// all markers that may take part in source j
+static struct range markers_of_source(const struct wake *wake, int j) {
+    if (!wake->has_markers) return (struct range){j, 1};
+    const int half = STRETCH_MARKERS / 2, first = j + 1 > half ? j + 1 - half : 0, left = wake->n_vortex - first;
+    return (struct range){first, left < STRETCH_MARKERS ? left : STRETCH_MARKERS};
+}
+
+// find the sources whose markers are in both wakes, without others in between
+static void find_same_sources(const struct wake *before, const struct wake *after, const int *partner,
+                              bool *same_before, bool *same_after) {
+    for (int k = 0; k < wake_n_sources(after); k++) same_after[k] = false;
+    for (int j = 0; j < wake_n_sources(before); j++) {
+        same_before[j] = false;
+        const int k = partner[j];
+        if (k < 0 || k >= wake_n_sources(after) || (j < before->n_old) != (k < after->n_old)) continue;
+        const struct range one = markers_of_source(before, j), other = markers_of_source(after, k);
+        bool is_equal = other.first - k == one.first - j && other.n == one.n;
+        for (int i = 0; i < one.n && is_equal; i++) is_equal = partner[one.first + i] == other.first + i;
+        same_before[j] = is_equal;
+        if (is_equal) same_after[k] = true;
+    }
+}
+
+struct impulse_moments impulse_thin_wake(const struct school *school, struct state *state, int f,
+                                         struct impulse_thinning *thinning) {
+    struct wake *const wake = &state->wake[f], before = *wake;
     const struct fish *const fish = &school->fish[f];
     const double t = state->t;
+    before.x = thinning->x;
+    before.y = thinning->y;
+    before.circulation = thinning->circulation;
+    before.birth = thinning->birth;
+    const size_t size = (size_t)wake->n_vortex * sizeof *wake->x;
+    memcpy(before.x, wake->x, size);
+    memcpy(before.y, wake->y, size);
+    memcpy(before.circulation, wake->circulation, size);
+    memcpy(before.birth, wake->birth, size);
 
-    const struct impulse_moments before = impulse_of_wake(wake, school, t, 0);
     wake_remove_old(wake, school, t);
     stretch_find_old(wake, fish, school);
     stretch_drop(wake, fish, school);
     stretch_restore(wake, fish, school, state->y);
-    const struct impulse_moments after = impulse_of_wake(wake, school, t, 0);
-    return (struct impulse_moments){.circulation = before.circulation - after.circulation,
-                                    .x = before.x - after.x,
-                                    .y = before.y - after.y,
-                                    .square = before.square - after.square};
+
+    // at the event, velocities and rates do not matter
+    const struct strengths now = strengths_at(0);
+    struct impulse_moments lost = {0};
+    find_partners(&before, wake, thinning->after);
+    find_same_sources(&before, wake, thinning->after, thinning->is_same[0], thinning->is_same[1]);
+    impulse_add_wake(&lost, &before, thinning->is_same[0], school, t, 0, now, nothing, 1);
+    impulse_add_wake(&lost, wake, thinning->is_same[1], school, t, 0, now, nothing, -1);
+    lost.product = 0;
+    return lost;
 }
 
 void impulse_book_thinned(const struct school *school, struct state *state, int f, const struct impulse_moments *lost) {

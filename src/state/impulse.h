@@ -37,9 +37,22 @@ double impulse_lost_circulation(const struct wake *wake, const struct school *sc
  * the tail; likewise below. */
 void impulse_fade(const struct school *school, struct state *state, int f);
 
-/* Remove old vortices, and drop markers, at the event of the state after the release. Returns what the wake lost;
- * product is 0. */
-struct impulse_moments impulse_thin_wake(const struct school *school, struct state *state, int f);
+/* Workspace of impulse_thin_wake: the vortices before, which of them is which afterwards (-1: none), and the sources
+ * before and after that are the same. */
+struct impulse_thinning {
+    int capacity;
+    double *x, *y, *circulation, *birth;
+    int *after;
+    bool *is_same[2];
+};
+
+/* Make room for a wake; not in parallel. */
+void impulse_thinning_reserve(struct arena *arena, struct impulse_thinning *thinning, const struct wake *wake);
+
+/* Remove old vortices, and drop and restore markers, at the event of the state after the release. Returns what the wake
+ * lost, summed over the sources that change; product is 0. */
+struct impulse_moments impulse_thin_wake(const struct school *school, struct state *state, int f,
+                                         struct impulse_thinning *thinning);
 
 /* Book what impulse_thin_wake returned. */
 void impulse_book_thinned(const struct school *school, struct state *state, int f, const struct impulse_moments *lost);

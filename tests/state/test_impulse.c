@@ -58,12 +58,20 @@ static double wither(const char *text) {
     }
     all_of(&setup, before);
     int n_events = 0;
+    struct impulse_thinning thinning = {0};
     for (; wake_n_sources(wake) > 0; n_events++) {
         BELOW(n_events, 100);
         impulse_fade(setup.school, setup.state, 0);
         wake_advance(wake, interval);
         setup.state->t += interval;
-        const struct impulse_moments lost = impulse_thin_wake(setup.school, setup.state, 0);
+        impulse_thinning_reserve(test_arena(), &thinning, wake);
+        const struct impulse_moments before_thinning = impulse_of_wake(wake, setup.school, setup.state->t, 0);
+        const struct impulse_moments lost = impulse_thin_wake(setup.school, setup.state, 0, &thinning);
+        const struct impulse_moments after_thinning = impulse_of_wake(wake, setup.school, setup.state->t, 0);
+        NEAR(lost.circulation, before_thinning.circulation - after_thinning.circulation, 1e-14, 0);
+        NEAR(lost.x, before_thinning.x - after_thinning.x, 1e-13, 0);
+        NEAR(lost.y, before_thinning.y - after_thinning.y, 1e-13, 0);
+        NEAR(lost.square, before_thinning.square - after_thinning.square, 1e-12, 0);
         impulse_book_thinned(setup.school, setup.state, 0, &lost);
         all_of(&setup, now);
         if (setup.school->removed == REMOVED_RETAINED) NEAR_ARRAY(3, now, before, 1e-14, 1e-13);

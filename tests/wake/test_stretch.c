@@ -257,6 +257,47 @@ TEST(markers_return_sooner_near_a_body) {
     }
 }
 
+// what thinning loses is summed over the sources that change, and equals the change of the whole wake
+TEST(what_thinning_loses_is_the_change_of_the_wake) {
+    enum { N = 160, EVENTS = 60 };
+    static const char *const fish_of[] = {FISH("infinite"), FISH("finite")};
+    for (int span = 0; span < 2; span++) {
+        char text[512];
+        snprintf(text, sizeof text, TIME "wake: {shedding: sheet, smoothing: 0.1, lifetime: 3, decay: 1}\n%s",
+                 fish_of[span]);
+        struct setup setup = wavy(text, N);
+        const struct school *const school = setup.school;
+        struct wake *const wake = &setup.state->wake[0];
+        struct impulse_thinning thinning = {0};
+        int n_dropped = 0, n_restored = 0;
+        double largest = 0;
+        for (int event = 0; event < EVENTS; event++) {
+            // every event stretches the sheet a little, from its tail
+            const double tail = wake->x[wake->n_vortex - 1];
+            for (int i = 0; i < wake->n_vortex; i++) wake->x[i] = tail + 1.02 * (wake->x[i] - tail);
+            setup.state->t += school->interval;
+            wake_release(wake, tail - 0.016, 0.05 * sin(6.28 * setup.state->t), 0.1 * cos(6 * setup.state->t),
+                         setup.state->t);
+            wake_reserve(wake, wake->n_vortex + wake->n_old);
+            impulse_thinning_reserve(test_arena(), &thinning, wake);
+            const struct impulse_moments before = impulse_of_wake(wake, school, setup.state->t, 0);
+            const int n_before = wake->n_vortex;
+            const struct impulse_moments lost = impulse_thin_wake(school, setup.state, 0, &thinning);
+            const struct impulse_moments after = impulse_of_wake(wake, school, setup.state->t, 0);
+            NEAR(lost.circulation, before.circulation - after.circulation, 1e-14, 0);
+            NEAR(lost.x, before.x - after.x, 1e-12, 0);
+            NEAR(lost.y, before.y - after.y, 1e-13, 0);
+            NEAR(lost.square, before.square - after.square, 1e-10, 0);
+            largest = fmax(largest, fabs(lost.x));
+            n_dropped += wake->n_vortex < n_before;
+            n_restored += wake->n_vortex > n_before;
+        }
+        ABOVE(largest, 1e-9);
+        ABOVE(n_dropped, 5);
+        ABOVE(n_restored, 2);
+    }
+}
+
 TEST(vortices_from_outside_stay) {
     struct setup setup = wavy(TIME "wake: {shedding: sheet, lifetime: 3, spare_vortices: 3}\n" FISH("infinite"), 100);
     struct wake *const wake = &setup.state->wake[0];
