@@ -347,6 +347,7 @@ def plot_budget(study, figure):
             middle.barh(-i, part[i], color=COLOURS[(i + 1) % 8], hatch="//" if is_flagged[i] else None, edgecolor="white", lw=0)
         middle.set_yticks(-np.arange(len(keys)), names, size=7)
         middle.set_xlim(0, None)
+        middle.xaxis.set_major_locator(matplotlib.ticker.MaxNLocator(5))
         middle.set_xlabel("part of the error [% of the value]" + (", hatched: flagged" if any(is_flagged) else ""))
         draw_levels(right, study, quantity, keys, part, fish)
         right.set_xlabel("levels of each key")
@@ -615,7 +616,7 @@ def plot_relative(study, x, y, labels, quantity, figure):
 
 def mark_states(figure, names, paths):
     """The places of the fish in results of `shoal steady` (steady.formation) on a map over places with a panel per fish but the
-    first: filled marks for stable states, open ones for unstable states."""
+    first: filled marks for stable states, open ones for those that are unstable or undecided."""
     panels = {axes.get_title(): axes for axes in figure.axes}
     for path in paths:
         state = Results(path)
@@ -624,12 +625,14 @@ def mark_states(figure, names, paths):
             raise FileError(f"{path}: no formation in it: `shoal steady` with steady.formation finds one")
         way = state["com"][-1, 0] - state["com"][0, 0]
         ahead = (way[0] + 1j * way[1]) / np.hypot(*way)
+        is_known = "steady_multiplier" in state.data.variables and len(state["steady_multiplier"]) > 0
+        is_stable = is_known and np.hypot(*state["steady_multiplier"][0]) + state["steady_multiplier_error"][0] < 1
         for name, (x, y) in list(zip(state.names, place))[1:]:
             if name not in names:
                 raise CaseError(f"{path}: {name} is not a fish of the study")
             at = (x + 1j * y) * ahead
             panels[name].plot(at.real, at.imag, ls="", marker="o", ms=6, mec="black", clip_on=False,
-                              mfc="gold" if state["steady_growth"] < 0 else "none")
+                              mfc="gold" if is_stable else "none")
 
 
 def is_known(study, name):
