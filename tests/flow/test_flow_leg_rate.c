@@ -126,8 +126,10 @@ TEST(the_integral_by_parts_is_the_sum_over_all_legs) {
         "depth_table: [0.12, 0.2, 0.24, 0.24, 0.2, 0.16, 0.18, 0.22]}"};
     for (size_t i = 0; i < sizeof seconds / sizeof *seconds; i++) {
         const double coarse = error_between_fish(0.02, seconds[i]), fine = error_between_fish(0.01, seconds[i]);
-        // the young part is of second order in the spacing of the markers, and legs beyond the reach are left out
-        BELOW(coarse, 0.1);
+        // The young part is of second order in the spacing of the markers, and legs beyond the reach are left out. With
+        // the shorter fish, half of the spacing takes the error from 0.091 to 0.007: 0.02 hardly resolves its wake, in
+        // which forms of sixth order err by a little more than the cubic ones, whose bound was 0.09.
+        BELOW(coarse, i == 1 ? 0.1 : 0.015);
         BELOW(fine, 0.3 * coarse);
     }
 }
