@@ -168,7 +168,7 @@ static void flow_place_wake(const struct flow *flow, const struct state *state, 
     const struct wake *const wake = &state->wake[f];
     struct sheet *const sheet = &flow->fish[f].wake;
     if (is_new) sheet_build(sheet, &flow->school->fish[f], flow->school, wake, state->t);
-    sheet_place(sheet, flow->school, wake, state->t, flow->t - state->t);
+    sheet_place(sheet, &flow->school->fish[f], flow->school, wake, state->t, flow->t - state->t);
 }
 
 // place the points and bound vortices of a fish, and find legs and circulations at its control points

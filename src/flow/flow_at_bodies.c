@@ -378,7 +378,7 @@ static void place_decayed(struct sheet *sheet, const struct flow *flow, const st
     double tail[2];
     fish_tail(fish, state->y, tail);
     sheet_build(sheet, fish, &whole, wake, state->t);
-    sheet_place(sheet, &whole, wake, state->t, 0);
+    sheet_place(sheet, fish, &whole, wake, state->t, 0);
     sheet_place_nascent(&sheet->middles, &whole, wake, state->t, 0, tail, NULL, state->y[fish->at.circulation]);
 
     const struct sources *const now = &flow->fish[g].wake.middles.sources, *const lost = &sheet->middles.sources;

@@ -99,37 +99,49 @@ static void set_distances(const struct wake *wake, double tau, const double *x, 
     }
 }
 
+// the markers at the start or at the end of the interval, with their distances and what remains of their labels
+static void markers_at(struct sheet *sheet, const struct school *school, const struct wake *wake, double t, int end) {
+    const double tau = end * school->interval;
+    double *const x = sheet->x[end] + SHEET_PAD, *const y = sheet->y[end] + SHEET_PAD;
+    wake_places(wake, school->interval, tau, x, y);
+    set_distances(wake, tau, x, y, sheet->distance[end]);
+    for (int i = 0; i < wake->n_vortex; i++) sheet->remains[end][i] = wake_part_of_label(wake, school, t, end, i);
+}
+
+// the values of a point at the start or at the end of the interval
+static void point_at(const struct sheet *sheet, const struct sheet_points *points, const struct fish *fish,
+                     const struct school *school, const struct wake *wake, double t, int i, int end) {
+    const int newest = wake->n_vortex - 1, newer = points->newer[i], older = points->older[i];
+    const double tau = end * school->interval, xi = points->xi[i];
+    const double *const x = sheet->x[end] + SHEET_PAD, *const y = sheet->y[end] + SHEET_PAD;
+    const double from_tail[2] = {(1 - xi) * x[newer] + xi * x[older] - wake->x[newest] - tau * wake->tail_velocity[0],
+                                 (1 - xi) * y[newer] + xi * y[older] - wake->y[newest] - tau * wake->tail_velocity[1]};
+
+    // beyond this square of the distance the taper differs from 1 by exp(-ratio^2) = 3e-14, for any tangent
+    const double taper = fmax(fish->taper, fish->taper_beside), far = 5.5677643628300219 * taper * taper;
+    const bool is_far = from_tail[0] * from_tail[0] + from_tail[1] * from_tail[1] > far;
+
+    // middles are sources for other targets, with the full smoothing of the pair
+    points->smoothing[end][i] = 0;
+    if (points == &sheet->graded) {
+        points->smoothing[end][i] = is_far ? fish->smoothing : sheet_taper(fish, from_tail, wake->tail_tangent);
+    }
+    const double *const distance = sheet->distance[end];
+    points->leg[end][i] = sheet_leg(fish, (1 - xi) * distance[newer] + xi * distance[older]);
+    points->remains[end][i] = newer == older ? wake_part_of_marker(wake, school, t, end, newer)
+                                             : wake_part_of_stretch(wake, school, t, end, older);
+}
+
 // add a point between two markers
 static void points_add(const struct sheet *sheet, struct sheet_points *points, const struct fish *fish,
                        const struct school *school, const struct wake *wake, double t, int newer, int older, double xi,
                        double part) {
-    const int i = points->n_released++, newest = wake->n_vortex - 1;
+    const int i = points->n_released++;
     points->newer[i] = newer;
     points->older[i] = older;
     points->xi[i] = xi;
     points->part[i] = part;
-
-    for (int end = 0; end < 2; end++) {
-        const double tau = end * school->interval;
-        const double *const x = sheet->x[end] + SHEET_PAD, *const y = sheet->y[end] + SHEET_PAD;
-        const double from_tail[2] = {
-            (1 - xi) * x[newer] + xi * x[older] - wake->x[newest] - tau * wake->tail_velocity[0],
-            (1 - xi) * y[newer] + xi * y[older] - wake->y[newest] - tau * wake->tail_velocity[1]};
-
-        // beyond this square of the distance the taper differs from 1 by exp(-ratio^2) = 3e-14, for any tangent
-        const double taper = fmax(fish->taper, fish->taper_beside), far = 5.5677643628300219 * taper * taper;
-        const bool is_far = from_tail[0] * from_tail[0] + from_tail[1] * from_tail[1] > far;
-
-        // middles are sources for other targets, with the full smoothing of the pair
-        points->smoothing[end][i] = 0;
-        if (points == &sheet->graded) {
-            points->smoothing[end][i] = is_far ? fish->smoothing : sheet_taper(fish, from_tail, wake->tail_tangent);
-        }
-        const double *const distance = sheet->distance[end];
-        points->leg[end][i] = sheet_leg(fish, (1 - xi) * distance[newer] + xi * distance[older]);
-        points->remains[end][i] = newer == older ? wake_part_of_marker(wake, school, t, end, newer)
-                                                 : wake_part_of_stretch(wake, school, t, end, older);
-    }
+    point_at(sheet, points, fish, school, wake, t, i, 0);
 }
 
 // the matrix of the forms of old stretches; an event, which builds a sheet twice, needs it once
@@ -172,6 +184,7 @@ void sheet_build(struct sheet *sheet, const struct fish *fish, const struct scho
     const int n = wake->n_vortex, n_stretches = is_sheet && n > 0 ? n - 1 : 0;
     struct sheet_points *const graded = &sheet->graded, *const middles = &sheet->middles;
     graded->n_released = middles->n_released = sheet->n_single = 0;
+    sheet->has_end = false;
     graded->n_nascent = is_sheet ? SHEET_PANEL : 0;
     middles->n_nascent = 1;
     for (int i = 0; i < n && !is_sheet; i++) middles->newer[middles->n_released++] = i;
@@ -182,13 +195,7 @@ void sheet_build(struct sheet *sheet, const struct fish *fish, const struct scho
             memset(padded[i], 0, SHEET_PAD * sizeof(double));
             memset(padded[i] + SHEET_PAD + n, 0, SHEET_PAD * sizeof(double));
         }
-        for (int end = 0; end < 2; end++) {
-            const double tau = end * school->interval;
-            double *const x = sheet->x[end] + SHEET_PAD, *const y = sheet->y[end] + SHEET_PAD;
-            wake_places(wake, school->interval, tau, x, y);
-            set_distances(wake, tau, x, y, sheet->distance[end]);
-            for (int i = 0; i < n; i++) sheet->remains[end][i] = wake_part_of_label(wake, school, t, end, i);
-        }
+        markers_at(sheet, school, wake, t, 0);
         build_old(sheet, fish, school, wake, t);
     }
 
@@ -259,14 +266,26 @@ static void points_place(const struct sheet *sheet, const struct sheet_points *p
     }
 }
 
-// set the values that are linear in time, from point first on, and reduce the circulations
-static void points_fade(const struct sheet_points *points, int first, double q) {
+// set the values that are linear in time, from point first on, and reduce the circulations; end: where they are known
+static void points_fade(const struct sheet_points *points, int first, double q, int end) {
     const struct sources *const sources = &points->sources;
     for (int i = first; i < points->n_released; i++) {
-        const double smoothing = (1 - q) * points->smoothing[0][i] + q * points->smoothing[1][i];
+        const double smoothing = (1 - q) * points->smoothing[0][i] + q * points->smoothing[end][i];
         sources->square[i] = smoothing * smoothing;
-        sources->leg[i] = (1 - q) * points->leg[0][i] + q * points->leg[1][i];
-        sources->q[i] *= points->remains[0][i] + q * (points->remains[1][i] - points->remains[0][i]);
+        sources->leg[i] = (1 - q) * points->leg[0][i] + q * points->leg[end][i];
+        sources->q[i] *= points->remains[0][i] + q * (points->remains[end][i] - points->remains[0][i]);
+    }
+}
+
+// find the values at the end of the interval
+static void find_end(struct sheet *sheet, const struct fish *fish, const struct school *school, const struct wake *wake,
+                     double t) {
+    if (sheet->has_end) return;
+    sheet->has_end = true;
+    markers_at(sheet, school, wake, t, 1);
+    for (int i = 0; i < sheet->graded.n_released; i++) point_at(sheet, &sheet->graded, fish, school, wake, t, i, 1);
+    for (int i = sheet->n_markers + sheet->n_single; i < sheet->middles.n_released; i++) {
+        point_at(sheet, &sheet->middles, fish, school, wake, t, i, 1);
     }
 }
 
@@ -314,7 +333,8 @@ static void place_single(const struct sheet *sheet, const struct wake *wake) {
     }
 }
 
-void sheet_place(struct sheet *sheet, const struct school *school, const struct wake *wake, double t, double tau) {
+void sheet_place(struct sheet *sheet, const struct fish *fish, const struct school *school, const struct wake *wake,
+                 double t, double tau) {
     const double q = tau / school->interval;
     const struct sheet_points *const graded = &sheet->graded, *const middles = &sheet->middles;
     const struct sources *const from = &graded->sources, *const to = &middles->sources;
@@ -324,11 +344,13 @@ void sheet_place(struct sheet *sheet, const struct school *school, const struct 
         return;
     }
 
+    if (q > 0) find_end(sheet, fish, school, wake, t);
+    const int end = sheet->has_end ? 1 : 0;
     double *const label = sheet->label + SHEET_PAD;
     wake_places(wake, school->interval, tau, sheet->x[0] + SHEET_PAD, sheet->y[0] + SHEET_PAD);
     wake_labels(wake, school->interval, tau, label);
     for (int i = 0; i < wake->n_vortex; i++) {
-        label[i] *= sheet->remains[0][i] + q * (sheet->remains[1][i] - sheet->remains[0][i]);
+        label[i] *= sheet->remains[0][i] + q * (sheet->remains[end][i] - sheet->remains[0][i]);
     }
 
     const int n_shared = sheet->n_markers + sheet->n_single;
@@ -336,8 +358,8 @@ void sheet_place(struct sheet *sheet, const struct school *school, const struct 
     place_single(sheet, wake);
     points_place(sheet, graded, n_shared);
     points_place(sheet, middles, n_shared);
-    points_fade(graded, 0, q);
-    points_fade(middles, n_shared, q);
+    points_fade(graded, 0, q, end);
+    points_fade(middles, n_shared, q, end);
 
     // the other view
     double *const copies[][2] = {{from->x, to->x},   {from->y, to->y},   {from->q, to->q},

@@ -67,6 +67,7 @@ struct sheet {
     struct arena *arena;
     struct sheet_points graded, middles;
     int n_markers, n_single, capacity;
+    bool has_end; /* whether the values at the end of the interval are known */
     /* markers at both ends of the interval or at one time, and labels, behind SHEET_PAD zeros; remaining parts of
      * labels and distances from the tail along the sheet at both ends of the interval                 (n_vortex) */
     double *x[2], *y[2], *label, *remains[2], *distance[2];
@@ -84,8 +85,10 @@ void sheet_reserve(struct arena *arena, struct sheet *sheet, int n);
 void sheet_build(struct sheet *sheet, const struct fish *fish, const struct school *school, const struct wake *wake,
                  double t);
 
-/* Set the released points to the time tau after the event at time t. */
-void sheet_place(struct sheet *sheet, const struct school *school, const struct wake *wake, double t, double tau);
+/* Set the released points to the time tau after the event at time t. The values at the end of the interval are found
+ * by the first call with tau > 0: a sheet that is built for the velocities at an event does not need them. */
+void sheet_place(struct sheet *sheet, const struct fish *fish, const struct school *school, const struct wake *wake,
+                 double t, double tau);
 
 /* Set the nascent points to the time tau with the tail position at this time; shed: total circulation shed by the fish,
  * m2 s-1. The stretch ends at the newest marker (tangent NULL), or, for control points of the same fish, with the

@@ -156,7 +156,7 @@ TEST(stretches_decay_by_labels_only_if_rings_must_stay_closed) {
         struct sheet sheet = {.n_markers = 0};
         sheet_reserve(setup.arena, &sheet, 8);
         sheet_build(&sheet, setup.school->fish, setup.school, wake, setup.state->t);
-        sheet_place(&sheet, setup.school, wake, setup.state->t, 0.3 * setup.school->interval);
+        sheet_place(&sheet, &setup.school->fish[0], setup.school, wake, setup.state->t, 0.3 * setup.school->interval);
         double part[8];
         for (int i = 0; i < 8; i++) part[i] = wake_strength_within(setup.school, 0.02 * (8 - i), 0.3);
         BELOW(part[0], 0.2);

@@ -336,7 +336,7 @@ TEST(old_stretches_act_from_their_markers_in_every_view) {
         struct sheet sheet = {.n_markers = 0};
         sheet_reserve(setup.arena, &sheet, n);
         sheet_build(&sheet, fish, school, wake, t);
-        sheet_place(&sheet, school, wake, t, tau);
+        sheet_place(&sheet, fish, school, wake, t, tau);
 
         // the forms one by one
         double q[100] = {0}, line[2][100] = {{0}}, sum = 0;
@@ -372,7 +372,7 @@ TEST(old_stretches_act_from_their_markers_in_every_view) {
 
         // markers as sources at markers: the same sum of circulations and moments
         struct sources markers = {.arena = setup.arena};
-        sheet_place(&sheet, school, wake, t, 0);
+        sheet_place(&sheet, fish, school, wake, t, 0);
         sheet_markers(&markers, &sheet, fish, school, wake, t, 0);
         for (int i = 0; i < sheet.middles.n_released; i++) sum += sheet.middles.sources.q[i];
         const struct impulse_moments moments = impulse_of_wake(wake, school, t, 0);
