@@ -76,7 +76,7 @@ static void compare(const struct growing *state) {
 }
 
 #define PLATES                                                                    \
-    "format: 1\ntime: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n" \
+    "format: 1\ntime: {end: 1, shedding_interval: %s, output_interval: 0.05}\n"   \
     "fluid: {density: 1, viscosity: 2e-3}\nwake: {lifetime: 8, smoothing: 0.2}\n" \
     "steady: {formation: true, tolerance: %s}\nsolver: {rtol: %s}\n"              \
     "defaults: {fish: {nodes: 4, sheet_points: 13, " VERIFY_ATTACHED              \
@@ -110,7 +110,7 @@ static void long_run(void) {
     struct verify_search search;
     struct steady_multipliers multipliers;
     char text[2048];
-    const int length = snprintf(text, sizeof text, PLATES, "1e-3", "3e-5", "2.75", "0.12");
+    const int length = snprintf(text, sizeof text, PLATES, "0.05", "1e-3", "3e-5", "2.75", "0.12");
     snprintf(text + length, sizeof text - (size_t)length,
              "fish: [{}, {start: {position: [3.87, 0]}}, {start: {position: [7.6, 0]}}, {start: {position: [11.4, "
              "0]}},\n  {start: {position: [15.3, 0]}}]\n");
@@ -157,6 +157,32 @@ static void long_run(void) {
     verify_relative("five plates: period, beats", "a run of 60 beats", (last - first) / (n_passages - 1), period, 0.15);
 }
 
+/* The multiplier of two plates with other numerical parameters. */
+static void other_parameters(void) {
+    static const char *const interval[] = {"0.05", "0.05", "0.025", "0.025"}, *const rtol[] = {"3e-5", "1e-6", "3e-5",
+                                                                                               "1e-6"};
+    double first = 0, first_error = 0;
+    for (int i = 0; i < 4; i++) {
+        struct verify_search search;
+        struct steady_multipliers multipliers;
+        char text[2048];
+        const int length = snprintf(text, sizeof text, PLATES, interval[i], "1e-3", rtol[i], "3.9", "0.15");
+        snprintf(text + length, sizeof text - (size_t)length, "fish: [{}, {start: {position: [5.06, 0]}}]\n");
+        verify_search_open(&search, text);
+        verify_ok(steady_search_run(&search.problem));
+        verify_ok(steady_multipliers_find(search.simulation->arena, &search.problem, &multipliers));
+        const double size = hypot(multipliers.real[0], multipliers.imaginary[0]);
+        if (i == 0) {
+            first = size;
+            first_error = multipliers.error[0];
+            continue;
+        }
+        verify_value(verify_text("two plates, interval %s, rtol %s", interval[i], rtol[i]),
+                     "the multiplier with 0.05 and 3e-5, within both errors", first, size,
+                     first_error + multipliers.error[0]);
+    }
+}
+
 void verify_growth(void) {
     if (verify_is_fast()) return;
     compare(&(struct growing){"default fish",
@@ -165,10 +191,11 @@ void verify_growth(void) {
                               0.05, 1, 8});
     for (size_t i = 0; i < sizeof schools / sizeof *schools; i++) {
         char text[2048];
-        const int length = snprintf(text, sizeof text, PLATES, schools[i].tolerance, schools[i].rtol, schools[i].speed,
-                                    schools[i].heave);
+        const int length = snprintf(text, sizeof text, PLATES, "0.05", schools[i].tolerance, schools[i].rtol,
+                                    schools[i].speed, schools[i].heave);
         snprintf(text + length, sizeof text - (size_t)length, "fish: [%s]\n", schools[i].fish);
         compare(&(struct growing){schools[i].name, text, schools[i].size, schools[i].first, schools[i].last});
     }
     long_run();
+    other_parameters();
 }
