@@ -1,6 +1,7 @@
 /* integrator.h: what every time integrator offers to the loop over a run. All methods stand behind one interface, so
  * that a run does not know which of them it uses; the loop over the steps and the rates of the bound strengths are
- * common to all. Tested by tests/solver/test_integrator.c. */
+ * common to all. The files ida.c, runge_kutta.c and one_step.c have no headers of their own: all that they share are
+ * the constants below, one for each family of methods. Tested by tests/solver/test_integrator.c. */
 #ifndef INTEGRATOR_H
 #define INTEGRATOR_H
 
