@@ -14,6 +14,10 @@ double fish_sheet_place(const struct fish *fish, double j) {
     return j == last ? 1 : (1 - cos(M_PI * j / last)) / 2;
 }
 
+double fish_sheet_index(const struct fish *fish, double place) {
+    return acos(1 - 2 * place) / M_PI * (fish->n_sheet - 1);
+}
+
 // the points on the line of the body: vortices, control points between them, and tangents
 static enum status points_set(struct arena *arena, struct fish *fish, bool is_smooth, bool is_chebyshev,
                               const volatile sig_atomic_t *stop) {

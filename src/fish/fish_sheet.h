@@ -16,6 +16,9 @@ int fish_sheet_least(const struct fish_parameters *from);
  * bound vortices at j = 0, 1, ..., the control points halfway between them at j = c + 0.5. */
 double fish_sheet_place(const struct fish *fish, double j);
 
+/* The inverse: j of a place. */
+double fish_sheet_index(const struct fish *fish, double place);
+
 /* Set all data per vortex and per control point of fish f, an element of the array of all fish. The body of the fish is
  * set. is_strip: the school has sheets of finite span. Fails with STATUS_STOPPED. */
 enum status fish_sheet_set(struct arena *arena, struct fish *fish, int f, const struct school_parameters *parameters,

@@ -6,6 +6,7 @@
 #include <stddef.h>
 
 #include "body/rod.h"
+#include "fish/fish_sheet.h"
 #include "flow/flow_at_bodies.h"
 #include "flow/flow_external.h"
 #include "flow/images.h"
@@ -194,8 +195,7 @@ static void sensor_add_fish(const struct sensor_targets *at, int f, int g) {
 // ---- Bernoulli's equation on both sides
 
 int sensor_weights(const struct fish *fish, double fraction, double weight[4]) {
-    // the inverse of fish_sheet_place, in control points
-    const double place = acos(1 - 2 * fraction) / M_PI * fish->n_control - 0.5;
+    const double place = fish_sheet_index(fish, fraction) - 0.5;  // in control points
     const int most = fish->n_control - 3, c = (int)fmin(fmax(floor(place), 1), most);
     const double x = place - c;
     weight[0] = -x * (x - 1) * (x - 2) / 6;

@@ -5,6 +5,7 @@
 
 #include "fish/fish.h"
 #include "fish/fish_school.h"
+#include "fish/fish_sheet.h"
 #include "school.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
@@ -159,8 +160,9 @@ TEST(sheet_points_are_cosine_points_and_weights_add_up_to_the_length) {
 TEST(control_points_are_chebyshev_points_or_midpoints_of_chords) {
     struct setup setup = setup_of(SMALL "fish: [{force: reactive, sheet_points: 11}]\n");
     for (int c = 0; c < 10; c++) {
-        NEAR(arc_of(setup.school->fish, &setup.school->fish[0].control_point[c]), (1 - cos(pi * (c + 0.5) / 10)) / 2,
-             1e-15, 0);
+        const double place = (1 - cos(pi * (c + 0.5) / 10)) / 2;
+        NEAR(arc_of(setup.school->fish, &setup.school->fish[0].control_point[c]), place, 1e-15, 0);
+        NEAR(fish_sheet_index(setup.school->fish, place), c + 0.5, 1e-13, 0);
     }
     school_build(
         &setup, SMALL
