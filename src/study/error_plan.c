@@ -108,7 +108,10 @@ static void add_columns(struct error_sweep *sweep, const char *path) {
     struct arena *const arena = sweep->arena;
     struct sweep_axis *const axis = &sweep->study.sweep[0];
     const struct key *const key = case_table_row(path);
-    const bool is_of_all = is_of_all_fish(sweep, path);
+    // a comparison of all points, which each point asks for
+    signed char *const of_all = &sweep->of_all[key - case_table];
+    if (*of_all == 0) *of_all = is_of_all_fish(sweep, path) ? 1 : -1;
+    const bool is_of_all = *of_all > 0;
     const int n = is_of_all ? 1 : n_owners(&sweep->study, path);
     GROW(arena, axis->key, axis->n_keys + n);
     for (int f = 0; f < n; f++) {
@@ -921,6 +924,7 @@ enum status error_plan_create(struct arena *arena, struct error_sweep **plan, co
     TRY(study_folder_parse(arena, &parsed, values->merged, values->name, 0, NULL));
     sweep->study = *parsed;
     sweep->study.text = arena_text(arena, "%s", values->text);
+    NEW(arena, sweep->of_all, case_table_n);
 
     // the keys of each point
     char **swept = NULL, **value;

@@ -109,10 +109,11 @@ struct error_sweep {
     struct case_values study; /* the case, with the axis of members */
     int n_swept;              /* the first keys of the axis are those of the sweep */
     int n_points;
-    struct error_study *point;          /* (n_points) */
-    struct error_study *against;        /* the other case; NULL: none */
-    int *twin;                          /* the point that each point is compared with; NULL: none   (n_points) */
-    int fish, twin_fish;                /* the fish that are compared with each other; -1: each with its own twin */
+    struct error_study *point;   /* (n_points) */
+    signed char *of_all;         /* add_columns: one column serves all fish; 0: not known, -1: no (case_table_n) */
+    struct error_study *against; /* the other case; NULL: none */
+    int *twin;                   /* the point that each point is compared with; NULL: none   (n_points) */
+    int fish, twin_fish;         /* the fish that are compared with each other; -1: each with its own twin */
     struct error_sweep *ratio, *change; /* the comparisons: points with other values and keys; NULL: none */
 };
 
