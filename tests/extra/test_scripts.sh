@@ -196,7 +196,7 @@ draws plot.py study line/study.nc --of shed_circulation --reference theory.csv -
 "$program" steady "$root/cases/flag.yaml" -q --threshold 'fish[*].body.modulus=50000:100000' --set 'fish[*].nodes=9' -o crossing \
     >/dev/null 2>&1
 draws plot.py study crossing/study.nc --of steady_growth -- crossing.png
-draws plot.py swim crossing/member-0000.nc equilibrium.png
+draws plot.py swim crossing/state-000.nc equilibrium.png
 draws plot.py time formation.nc steady.png
 check "xarray opens a steady state" /usr/bin/python3 -c \
     'import xarray; data = xarray.open_dataset("formation.nc"); data.steady_speed.sel(fish=data.fish[0]).item()'
