@@ -4,6 +4,8 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <pthread.h>
+#include <signal.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -158,10 +160,16 @@ int durable_begin(struct durable_part *part, const char *target, unsigned permis
     *part = (struct durable_part){.descriptor = -1};
     if (!part_name_of(target, part->name)) return ENAMETOOLONG;
     memcpy(part->target, target, strlen(target) + 1);
+
+    // a signal between the creation and the note would leave the part behind
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, &before);
     int code = open_part(part->name, permissions, BYTE_OF_PART, &part->descriptor);
+    if (code == 0) part_note(part->name);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
 
     if (code == 0) {
-        part_note(part->name);
         code = ftruncate(part->descriptor, 0) == 0 ? 0 : errno;
     } else {
         part->name[0] = '\0';

@@ -385,6 +385,7 @@ end_while_writing() {  # signal, part, command...
     shift 2
     env --default-signal=INT,TERM,HUP "$program" "$@" >out 2>err </dev/null &
     pid=$!
+    wait_for handles "$pid" "$signal"
     wait_for eval "compgen -G '$part'" >/dev/null || return 1
     end_long_run "$signal"
 }
