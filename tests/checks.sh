@@ -95,9 +95,11 @@ wait_for() {  # command...
     done
 }
 
-# Does a process have a handler for a signal yet? An earlier signal would kill the process.
+# Does a process have a handler for a signal yet? An earlier signal would kill the process. Before the shell's child becomes
+# the program, it has the handlers of the shell.
 handles() {  # process, signal
     local name caught
+    [[ /proc/$1/exe -ef $program ]] || return 1
     while read -r name caught && [[ $name != SigCgt: ]]; do :; done <"/proc/$1/status"
     ((16#$caught >> ($(kill -l "$2") - 1) & 1))
 }
