@@ -326,21 +326,26 @@ static double parabola(const struct branch *branch, double arclength, int coordi
     return value;
 }
 
+/* Move x onto the branch in the plane normal to the distance of two points. */
+static enum status correct_between(struct walk *walk, double *x, const struct branch_point *a,
+                                   const struct branch_point *b) {
+    ARENA(scratch, walk->arena, "the way between two points");
+    const int size = walk->n + 1;
+    double *way;
+    NEW(scratch, way, size);
+    for (int j = 0; j < size; j++) way[j] = (b->x[j] - a->x[j]) / distance(size, a->x, b->x);
+    return correct(walk, x, way);
+}
+
 /* Add a point at an arclength between points number at and at + 1: at first on the parabola, then moved onto the
- * branch in the plane normal to their distance. */
+ * branch. */
 static enum status add_between(struct walk *walk, int at, double arclength) {
     ARENA(scratch, walk->arena, "a point between");
     const struct branch *const branch = walk->branch;
-    const int size = walk->n + 1;
-    const struct branch_point *const a = branch->point[at], *const b = branch->point[at + 1];
-    double *x, *side;
-    NEW(scratch, x, size);
-    NEW(scratch, side, size);
-    for (int j = 0; j < size; j++) {
-        x[j] = parabola(branch, arclength, j);
-        side[j] = (b->x[j] - a->x[j]) / distance(size, a->x, b->x);
-    }
-    TRY(correct(walk, x, side));
+    double *x;
+    NEW(scratch, x, walk->n + 1);
+    for (int j = 0; j <= walk->n; j++) x[j] = parabola(branch, arclength, j);
+    TRY(correct_between(walk, x, branch->point[at], branch->point[at + 1]));
     return add_point(walk, at + 1, x, arclength);
 }
 
@@ -415,18 +420,16 @@ static bool turns_near(const struct walk *walk, int at) {
  * the tolerance. */
 static enum status find_error_of_key(struct walk *walk, int at, double *error) {
     const struct branch *const branch = walk->branch;
-    const int size = walk->n + 1, k = walk->n;
-    const struct branch_point *const a = branch->point[at > 0 ? at - 1 : 0], *const point = branch->point[at];
-    const struct branch_point *const b = branch->point[at + 1 < branch->n_points ? at + 1 : at];
+    const int k = walk->n;
+    const struct branch_point *const before = branch->point[at > 0 ? at - 1 : 0], *const point = branch->point[at];
+    const struct branch_point *const after = branch->point[at + 1 < branch->n_points ? at + 1 : at];
     ARENA(scratch, walk->arena, "a finer correction");
-    double *x, *side;
-    NEW(scratch, x, size);
-    NEW(scratch, side, size);
-    for (int j = 0; j < size; j++) side[j] = (b->x[j] - a->x[j]) / distance(size, a->x, b->x);
-    memcpy(x, point->x, (size_t)size * sizeof *x);
+    double *x;
+    NEW(scratch, x, k + 1);
+    memcpy(x, point->x, (size_t)(k + 1) * sizeof *x);
     const double tolerance = walk->tolerance;
     walk->tolerance = tolerance / 10;
-    const enum status status = correct(walk, x, side);
+    const enum status status = correct_between(walk, x, before, after);
     walk->tolerance = tolerance;
     const bool is_coarse = status == STATUS_SOLVER;
     *error = fabs(walk->options->to - walk->options->from) * (is_coarse ? tolerance : fabs(x[k] - point->x[k]));

@@ -74,28 +74,7 @@ check runs_decay_and_grow_on_the_two_sides python "$root/tests/app/threshold_run
 
 # ---- the stable side of a branch ends at a fold: the follower falls back until its place is gone
 
-cat >follow.yaml <<'end'
-format: 1
-time: {end: 20, shedding_interval: 0.05, output_interval: 0.1}
-fluid: {density: 1, viscosity: 2e-3}
-wake: {lifetime: 3, smoothing: 0.2}
-steady: {formation: true, tolerance: 1e-3}
-defaults:
-  fish:
-    nodes: 4
-    sheet_points: 13
-    force: pressure
-    pressure: {span: infinite, suction_limit: 0}
-    drag: {skin: laminar}
-    start: {speed: 3.8}
-    wave: {amplitude: 0, frequency: 0}
-    body: {profile: uniform, thickness: 0.05, depth: 1, density: 20, modulus: 1e6}
-    motion: {prescribed: all, surge: free, heave: 0.15, frequency: 1}
-fish:
-  - {name: leader}
-  - {name: follower, start: {position: [5.5, 0]}, motion: {heave: 0.09}}
-end
-run steady follow.yaml --threshold 'fish[1].motion.heave=0.083:0.07' -o fold
+run steady "$root/tests/data/falling_back.yaml" --threshold 'fish[1].motion.heave=0.083:0.07' -o fold
 check a_fold_is_named has out 'a fold: the steady states of this branch end there'
 check it_has_a_bar grep -qE 'heave = 0[.]078[0-9]* \+- 0[.]0000' out
 check which_has_the_scatter_of_the_states grep -qE 'by the secant and [1-9].* by the state' out

@@ -22,6 +22,7 @@ struct bad_case {
     const char *path;        /* NAME.yaml */
     struct text entry;       /* the lines of the table from the name up to "----" */
     struct text file, wants; /* the case; its messages, without the places */
+    const char *got;         /* what the program says; NULL: it takes the case */
 };
 
 /* Cut the next line off a text; NULL at its end. */
@@ -109,7 +110,7 @@ static const char *said(const struct bad_case *bad) {
     return status == STATUS_CASE ? arena_text(test_arena(), "%s\n", status_message()) : NULL;
 }
 
-/* Write the files of all cases into a new folder, which becomes the working directory; and remove them. */
+/* Write the files of all cases into a new folder, which becomes the working directory. */
 static void write_files(int n, const struct bad_case *cases, char folder[]) {
     assert_true(mkdtemp(folder) && chdir(folder) == 0);
     for (int i = 0; i < n; i++) {
@@ -120,40 +121,40 @@ static void write_files(int n, const struct bad_case *cases, char folder[]) {
     }
 }
 
-static void remove_files(int n, const struct bad_case *cases, const char *folder, const char *before) {
-    for (int i = 0; i < n; i++) remove(cases[i].path);
+/* Read the table, and let the program say something about each case. Returns the number of cases. */
+static int read_and_ask(struct bad_case **cases, struct text *begin) {
+    char folder[] = "/tmp/shoal-bad-XXXXXX", before[4096];
+    assert_non_null(getcwd(before, sizeof before));
+    const int n = read_table(cases, begin);
+    write_files(n, *cases, folder);
+    for (int i = 0; i < n; i++) (*cases)[i].got = said(&(*cases)[i]);
+    for (int i = 0; i < n; i++) remove((*cases)[i].path);
     assert_int_equal(chdir(before), 0);
     assert_int_equal(rmdir(folder), 0);
+    return n;
 }
 
 TEST(each_bad_case_has_its_messages) {
-    char folder[] = "/tmp/shoal-bad-XXXXXX", before[4096];
-    assert_non_null(getcwd(before, sizeof before));
     struct bad_case *cases;
     struct text begin;
-    const int n = read_table(&cases, &begin);
-    write_files(n, cases, folder);
+    const int n = read_and_ask(&cases, &begin);
     int n_wrong = 0;
     for (int i = 0; i < n; i++) {
-        const char *const got = said(&cases[i]), *const want = shown(&cases[i]);
+        const char *const got = cases[i].got, *const want = shown(&cases[i]);
         if (got && strcmp(got, want) == 0) continue;
         n_wrong++;
         print_error("%s says\n%s\ninstead of\n%s\n", cases[i].path, got ? got : "nothing", want);
     }
-    remove_files(n, cases, folder, before);
     ABOVE(n, 150);
     assert_int_equal(n_wrong, 0);
 }
 
 static int write_table(void) {
-    char folder[] = "/tmp/shoal-bad-XXXXXX", before[4096];
-    assert_non_null(getcwd(before, sizeof before));
     struct bad_case *cases;
     struct text all;
-    const int n = read_table(&cases, &all);
-    write_files(n, cases, folder);
+    const int n = read_and_ask(&cases, &all);
     for (int i = 0; i < n; i++) {
-        const char *const got = said(&cases[i]);
+        const char *const got = cases[i].got;
         text_add(&all, "%s----\n", cases[i].entry.text);
         char *lines = arena_text(test_arena(), "%s", got ? got : ""), *line;
         while ((line = next_line(&lines))) {
@@ -163,7 +164,6 @@ static int write_table(void) {
         }
         if (i < n - 1) text_add(&all, "\n");
     }
-    remove_files(n, cases, folder, before);
     FILE *const file = fopen(table, "w");
     assert_non_null(file);
     fputs(all.text, file);

@@ -9,27 +9,7 @@ start_python
 # A follower that heaves less and less falls back, until at a fold its place is gone. Beyond the fold the branch returns: a
 # place farther behind, from which the follower leaves.
 key='fish[1].motion.heave'
-cat >plates.yaml <<'end'
-format: 1
-time: {end: 20, shedding_interval: 0.05, output_interval: 0.1}
-fluid: {density: 1, viscosity: 2e-3}
-wake: {lifetime: 3, smoothing: 0.2}
-steady: {formation: true, tolerance: 1e-3}
-defaults:
-  fish:
-    nodes: 4
-    sheet_points: 13
-    force: pressure
-    pressure: {span: infinite, suction_limit: 0}
-    drag: {skin: laminar}
-    start: {speed: 3.8}
-    wave: {amplitude: 0, frequency: 0}
-    body: {profile: uniform, thickness: 0.05, depth: 1, density: 20, modulus: 1e6}
-    motion: {prescribed: all, surge: free, heave: 0.15, frequency: 1}
-fish:
-  - {name: leader}
-  - {name: follower, start: {position: [5.5, 0]}, motion: {heave: 0.09}}
-end
+cp "$root/tests/data/falling_back.yaml" plates.yaml
 
 # ---- the branch
 
