@@ -42,11 +42,16 @@ skip() {  # name, reason
     n_skipped=$((n_skipped + 1))
 }
 
-# Pass or fail, by the code of the command that follows the name.
+# Pass or fail, by the code of the command that follows the name. The reason has what the command printed, and the errors of
+# the program if it ran in this folder.
 check() {  # name, command...
     local name=$1
     shift
-    if "$@" >check.out 2>&1; then pass "$name"; else fail "$name" "$* : $(head -c 600 check.out) $(head -c 600 err)"; fi
+    if "$@" >check.out 2>&1; then
+        pass "$name"
+    else
+        fail "$name" "$* : $(head -c 600 check.out) $(head -c 600 err 2>/dev/null)"
+    fi
 }
 
 # As check; skip where a program, or with "import MODULE" a module of Python, is missing.
