@@ -401,7 +401,12 @@ void flow_find_decayed(struct flow *flow, const struct state *state, double *par
     NEW(arena, n_decaying, school->n_fish);
     for (int i = 0; i < 4; i++) NEW(arena, values[i], flow->n_points);
     memset(part, 0, (size_t)school->n_fish * sizeof *part);
-    for (int g = 0; g < school->n_fish; g++) n_decaying[g] = count_decaying(&state->wake[g], school, state->t);
+    int n_all = 0;
+    for (int g = 0; g < school->n_fish; g++) {
+        n_decaying[g] = count_decaying(&state->wake[g], school, state->t);
+        n_all += n_decaying[g];
+    }
+    if (school->n_fish == 1 || n_all == 0) return;
 
     // find the bodies in the decaying part of the wake of another fish
     flow_place(flow, state, state->t, state->y);

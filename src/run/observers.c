@@ -1,6 +1,8 @@
 /* observers.c: what is recorded at the events of a run. */
 #include "run/observers.h"
 
+#include <math.h>
+
 #include "contact/clearance.h"
 #include "school/diagnostics.h"
 #include "school/diagnostics_energy.h"
@@ -39,6 +41,12 @@ void observers_after(struct residual *residual, struct state *state, const struc
     diagnostics_remember(residual, state);
     self_crossing_remember(school, state, residual->scratch);
     warnings_divergence(school, state, state->divergence, &state->diverged);
+
+    // look for faded wakes once in the shortest beat
+    double rate = 0;
+    for (int f = 0; f < school->n_fish; f++) rate = fmax(rate, fish_rate(school, &school->fish[f]));
+    const long events_per_beat = (long)fmax(1, round(1 / (rate * school->interval)));
+    if (state->event % events_per_beat == 0) warnings_fading(residual, state, state->fading, &state->faded);
 }
 
 void observers_jump(const struct observers *observers, struct residual *residual, struct state *state,

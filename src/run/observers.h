@@ -16,7 +16,7 @@ struct observers *observers_create(struct arena *arena, const struct school *sch
 void observers_before(struct observers *observers, struct residual *residual, struct state *state);
 
 /* After event_water or event_start: the impulse that the wakes lost, the momentum balance, the samples of the
- * histories, self-crossings and divergence. */
+ * histories, self-crossings and divergence; once a beat of the fastest fish, how much of the wakes has faded. */
 void observers_after(struct residual *residual, struct state *state, const struct event *event);
 
 /* After event_control: the integrals over the steps of the integrator begin anew where unknowns or powers jump. */

@@ -227,5 +227,6 @@ void diagnostics_restart(struct residual *residual, struct state *state) {
     clearance_start(residual->school, state, residual->neighbours, residual->scratch);
     state->has_crossed = false;
     memset(state->divergence, 0, sizeof state->divergence);
+    memset(state->fading, 0, sizeof state->fading);
     self_crossing_remember(residual->school, state, residual->scratch);
 }

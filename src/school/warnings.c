@@ -367,23 +367,36 @@ static double momentum_warning(const struct warning_subject *subject, char line[
 // At most this part of the velocity of wakes at a body may be lost by decay.
 static const double most_decayed = 0.05;
 
-static double wake_warning(const struct warning_subject *subject, char line[WARNING_BYTES]) {
-    const struct school *const school = subject->school;
-    double *const lost = subject->residual->scratch;
-    int n = 0, worst_fish = 0;
-    flow_find_decayed(subject->residual->flow, subject->state, lost);
+void warnings_fading(struct residual *residual, const struct state *state, double worst[N_FADING], long *faded) {
+    const struct school *const school = residual->school;
+    double *const lost = residual->scratch;
+    int n = 0, most = 0;
+    flow_find_decayed(residual->flow, state, lost);
     for (int f = 0; f < school->n_fish; f++) {
         if (force_model_of(&school->fish[f])->is_for_comparison) lost[f] = 0;
         n += lost[f] > most_decayed;
-        if (lost[f] > lost[worst_fish]) worst_fish = f;
+        if (lost[f] > lost[most]) most = f;
     }
+    if (!(lost[most] > worst[FADING_PART])) return;
+    const double now[N_FADING] = {lost[most], state->t, n};
+    memcpy(worst, now, sizeof now);
+    *faded = most;
+}
+
+static double wake_warning(const struct warning_subject *subject, char line[WARNING_BYTES]) {
+    const struct school *const school = subject->school;
+    const struct state *const state = subject->state;
+    double worst[N_FADING];
+    long faded = state->faded;
+    memcpy(worst, state->fading, sizeof worst);
+    warnings_fading(subject->residual, state, worst, &faded);
     char name[WHO_BYTES];
-    name_worst(school, worst_fish, n, name);
+    name_worst(school, (int)faded, (int)worst[FADING_FISH], name);
     snprintf(line, WARNING_BYTES,
-             "%s lies in the decaying part of another wake: %.0f %% of the velocity of wakes is lost there (limit "
-             "%.0f %%): increase wake.lifetime (%.4g s), or reduce wake.decay (%.4g s)",
-             name, 100 * lost[worst_fish], 100 * most_decayed, school->lifetime, school->decay);
-    return n > 0 ? always : 0;
+             "%s lies in the decaying part of another wake at t = %.4g s: %.0f %% of the velocity of wakes is lost "
+             "there (limit %.0f %%): increase wake.lifetime (%.4g s), or reduce wake.decay (%.4g s)",
+             name, worst[FADING_T], 100 * worst[FADING_PART], 100 * most_decayed, school->lifetime, school->decay);
+    return worst[FADING_PART] > most_decayed ? always : 0;
 }
 
 // ---- the table, in the order in which a result lists its warnings
@@ -447,8 +460,9 @@ const struct warning_row warnings_table[N_WARNINGS] = {
                        .of_fish = stall_warning},
     [WARNING_WAKE] =
         {"a faded wake",
-         "at the end, a body lies within a quarter of its length of decaying markers or vortices of another "
-         "fish, and the decay takes more than 5 % of the velocity that the wakes of other fish induce there",
+         "at the end, or at an event once a beat, a body lies within a quarter of its length of decaying "
+         "markers or vortices of another fish, and the decay takes more than 5 % of the velocity that the wakes of "
+         "other fish induce there",
          .of_school = wake_warning},
 };
 

@@ -49,6 +49,11 @@ double warnings_bending_length(const struct fish *fish);
 void warnings_divergence(const struct school *school, const struct state *state, double worst[N_DIVERGENCE],
                          long *diverged);
 
+/* Remember the most faded wake: if at the event of the state a fish misses more of the velocity of other fish's wakes,
+ * because they decay, than the worst so far, replace the worst and its fish. A run calls this once a beat for
+ * state->fading and state->faded, because a follower may have left the wake again when the run ends. */
+void warnings_fading(struct residual *residual, const struct state *state, double worst[N_FADING], long *faded);
+
 /* Fail with STATUS_SOLVER, naming time and remedy, if a value of the state, or a balance that is defined, is not
  * finite; such a state must not become a row of a result. diagnostics: of the same event as the state. */
 enum status warnings_refuse(const struct school *school, const struct state *state,

@@ -235,6 +235,8 @@ const struct state_row state_table[] = {
     {"crossed_t", OF_STATE(STATE_REAL, crossed_t), STATE_NO_ARRAY},
     {"diverged", OF_STATE(STATE_COUNT, diverged), STATE_NO_ARRAY},
     {"divergence", OF_STATE(STATE_REAL, divergence), STATE_NO_ARRAY},
+    {"faded", OF_STATE(STATE_COUNT, faded), STATE_NO_ARRAY},
+    {"fading", OF_STATE(STATE_REAL, fading), STATE_NO_ARRAY},
 };
 const int state_table_n = sizeof state_table / sizeof *state_table;
 
@@ -368,7 +370,7 @@ enum status state_table_check(const struct state *state, const struct school *sc
     bool is_good = state->event >= 0 &&
                    fabs(state->t - (double)state->event * school->interval) <= school->interval / 2 &&
                    state->crossed >= 0 && state->crossed < school->n_fish && state->diverged >= 0 &&
-                   state->diverged < school->n_fish;
+                   state->diverged < school->n_fish && state->faded >= 0 && state->faded < school->n_fish;
     is_good = is_good && state->n_past >= 0 && state->n_past <= STATE_PAST;
     for (int i = 0; i < 2; i++) {
         is_good = is_good && state->closest->fish[i] >= 0 && state->closest->fish[i] < school->n_fish;

@@ -76,6 +76,10 @@ struct closest {
  * node or of a vortex, m s-1; circulation shed, or of a vortex, m2 s-1. */
 enum divergence { DIVERGENCE_SIZE, DIVERGENCE_T, DIVERGENCE_SPEED, DIVERGENCE_CIRCULATION, N_DIVERGENCE };
 
+/* Values of the worst place in a faded wake: the part of the velocity of other fish's wakes that decay has taken, 0:
+ * none; time, s; number of fish that miss too much at this time (school/warnings.h). */
+enum fading { FADING_PART, FADING_T, FADING_FISH, N_FADING };
+
 enum { STATE_PAST = 4 };
 
 struct state {
@@ -96,6 +100,8 @@ struct state {
     double crossed_t;                  /* time of this event, s */
     long diverged;                     /* the fish with the worst divergence at an event so far */
     double divergence[N_DIVERGENCE];
+    long faded; /* the fish in the most faded wake so far */
+    double fading[N_FADING];
 };
 
 /* Create the state before the start, in an arena of its own: bodies at the start positions, all other values zero. The

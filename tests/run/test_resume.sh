@@ -115,6 +115,20 @@ run run place.yaml "${beats[@]}" -o beats.nc --set time.end=1.2
 run resume beats.ckpt -q --end 1.4
 run run place.yaml "${beats[@]}" -o reference.nc --set time.end=1.4
 check "a place that is held, with a checkpoint at 1.2 s" same beats.nc reference.nc
+# a fish that crosses a faded wake before the checkpoint: the warning survives, and is that of the longer run
+cat >crossing.yaml <<'CASE'
+format: 1
+time: {end: 4, shedding_interval: 0.02, output_interval: 1}
+wake: {lifetime: 3, decay: 2.25}
+defaults: {fish: {force: reactive, nodes: 9, start: {speed: 0.8}}}
+fish: [{name: leader}, {name: crossing, start: {position: [0.3, -1.5], heading: 90}}]
+CASE
+faded() { python "$root/tests/value.py" "$1" warnings | grep 'crossing lies in the decaying part of another wake'; }
+run run crossing.yaml --force -q --checkpoint-at 4
+run resume crossing.ckpt -q --end 4.6
+run run crossing.yaml --force -q --checkpoint-at 4 --set time.end=4.6 -o reference.nc
+check "a faded wake before the checkpoint" same crossing.nc reference.nc
+check "the warning about it" test "$(faded crossing.nc)" -a "$(faded crossing.nc)" = "$(faded reference.nc)"
 run run swimmer.yaml -q -o placed.nc --set time.checkpoint_interval=0 --set time.end=0.06 --checkpoint-at 0.04
 run resume placed.ckpt -q --end 0.12
 check a_place_is_noted_once test "$(places placed.nc)" = 0.04

@@ -635,6 +635,42 @@ TEST(a_follower_in_a_faded_wake_is_told) {
     }
 }
 
+// a fish that crosses the wake of the first one, whose part older than .75 beats decays
+#define LEADER_AND_CROSSING                                                       \
+    "time: {end: 5, shedding_interval: 0.02}\nwake: {lifetime: 3, decay: 2.25}\n" \
+    "defaults: {fish: {force: reactive, nodes: 9, start: {speed: 0.8}}}\n"        \
+    "fish: [{name: leader}, {name: crossing, start: {position: [0.3, -1.5], heading: 90}}]\n"
+
+TEST(a_faded_wake_in_the_middle_of_a_run_is_told_at_its_end) {
+    struct simulation *const simulation = school_simulation(LEADER_AND_CROSSING);
+    school_measure(simulation, 1);
+    expect_line(simulation, WARNING_WAKE, NULL);
+
+    // the fish crosses, and the run ends a length beside the wake
+    school_measure(simulation, 4.6);
+    expect_line(simulation, WARNING_WAKE, "crossing lies in the decaying part of another wake at t = ");
+    assert_true(simulation->state->fading[FADING_T] < 4);
+
+    // without what the run has remembered, the end alone says nothing, as in rows that begin later
+    diagnostics_restart(simulation->residual, simulation->state);
+    expect_line(simulation, WARNING_WAKE, NULL);
+}
+
+TEST(looking_for_faded_wakes_changes_no_bit) {
+    struct simulation *const often = school_simulation(LEADER_AND_CROSSING), *const once =
+                                                                                 school_simulation(LEADER_AND_CROSSING);
+    struct state *const looked = often->state;
+    for (int i = 0; i < 120; i++) {
+        assert_int_equal(simulate_step(often), STATUS_OK);
+        assert_int_equal(simulate_step(once), STATUS_OK);
+        warnings_fading(often->residual, looked, looked->fading, &looked->faded);
+    }
+    assert_true(looked->fading[FADING_PART] > once->state->fading[FADING_PART]);
+    const size_t bytes = (size_t)often->school->n_unknowns * sizeof(double);
+    assert_memory_equal(looked->y, once->state->y, bytes);
+    assert_memory_equal(looked->momentum, once->state->momentum, 2 * sizeof *looked->momentum);
+}
+
 TEST(the_lost_velocity_is_that_of_the_lost_circulation) {
     struct simulation *const simulation = school_simulation_of(LEADER_AND_FOLLOWER, "lifetime: 3, decay: 2.25",
                                                                "pressure: {span: infinite}", "1.5, 0.05");
