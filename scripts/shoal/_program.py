@@ -249,12 +249,12 @@ class Threshold(NamedTuple):
     by_error: float  #: error of the multiplier over slope
     by_secant: float  #: length of the last secant
     by_state: float  #: what a tenth of steady.tolerance changes at the nearest state
-    slope: float  #: of the modulus of the largest multiplier over the key, without a beat of the growth rate, s-1
     unstable: str  #: "above" or "below"
     kind: str  #: "fold", "multiplier +1", "period doubling", "Neimark-Sacker"; without a beat "divergence", "flutter"
     period: float  #: of the oscillation that grows, beats, without a beat s; 0: none
     points: list  #: of the branch: a dict of value, multiplier (or growth), error, period, label and file each
     path: str  #: of study.nc
+    slope: float = float("nan")  #: of the modulus of the largest multiplier over the key, without a beat of the growth rate, s-1; NaN: at a fold
 
     def __float__(self):
         return self.value

@@ -115,7 +115,7 @@ static void print_table(struct arena *arena, const struct branch *branch, const 
             fprintf(stream, "  %+20.4g", point->excess);
         }
         fprintf(stream, "  %9s", point->period > 0 ? arena_text(arena, "%.3g", point->period) : "-");
-        fprintf(stream, "  %s%s%s\n", steady_verdict(1 + point->excess, point->error), *point->label ? ", " : "",
+        fprintf(stream, "  %s%s%s\n", steady_verdict(point->excess, point->error), *point->label ? ", " : "",
                 point->label);
     }
 
@@ -133,8 +133,8 @@ static void print_json_threshold(const struct branch_threshold *found, FILE *str
     fprintf(stream,
             "\"threshold\": %.12g, \"bar\": %.6g, \"by_error\": %.6g, \"by_secant\": %.6g, \"by_state\": %.6g,\n  ",
             found->value, found->bar, found->by_error, found->by_secant, found->by_state);
-    fprintf(stream, "\"slope\": %.6g, \"unstable\": \"%s\", ", found->slope,
-            found->is_unstable_above ? "above" : "below");
+    if (!isnan(found->slope)) fprintf(stream, "\"slope\": %.6g, ", found->slope);
+    fprintf(stream, "\"unstable\": \"%s\", ", found->is_unstable_above ? "above" : "below");
     text_print_member(stream, "", "kind", found->nearest->label);
     fprintf(stream, ", \"period\": %.6g", found->period);
 }

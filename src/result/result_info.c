@@ -305,7 +305,7 @@ static enum status print_multipliers(const struct netcdf_reader *reader, double 
         fprintf(stream, "\n");
     }
 
-    const char *const verdict = steady_verdict(first[0], first[1]);
+    const char *const verdict = steady_verdict(first[0] - 1, first[1]);
     fprintf(stream, "  %s", verdict);
     if (strcmp(verdict, "undecided") == 0) fprintf(stream, ": 1 is within the error of the largest multiplier");
     if (strcmp(verdict, "unstable") != 0 && amplification > 1) {

@@ -18,9 +18,10 @@ enum { STEADY_QUANTITIES = 8 };
 /* Beats over which the growth of a disturbance is sought: steady_amplification. */
 enum { STEADY_AMPLIFIED_BEATS = 32 };
 
-/* Whether a state with this absolute value of the largest multiplier is stable, with the error of the value. */
-static inline const char *steady_verdict(double multiplier, double error) {
-    return multiplier + error < 1 ? "stable" : multiplier - error > 1 ? "unstable" : "undecided";
+/* Whether a state is stable, by the excess of the modulus of its largest multiplier over 1, or, without a beat, by its
+ * growth rate, and by the error of this number. */
+static inline const char *steady_verdict(double excess, double error) {
+    return excess + error < 0 ? "stable" : excess - error > 0 ? "unstable" : "undecided";
 }
 
 /* One fish: means over the last beat; without a beat the values at equilibrium. */

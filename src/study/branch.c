@@ -416,8 +416,8 @@ static bool turns_near(const struct walk *walk, int at) {
     return false;
 }
 
-/* How far the key of a point moves if the point is corrected to a tenth of the tolerance; where noise prevents this,
- * the tolerance. */
+/* How far the key of a point moves if the point is corrected to a tenth of the tolerance; where noise or a contact
+ * prevents this, the tolerance. */
 static enum status find_error_of_key(struct walk *walk, int at, double *error) {
     const struct branch *const branch = walk->branch;
     const int k = walk->n;
@@ -431,7 +431,7 @@ static enum status find_error_of_key(struct walk *walk, int at, double *error) {
     walk->tolerance = tolerance / 10;
     const enum status status = correct_between(walk, x, before, after);
     walk->tolerance = tolerance;
-    const bool is_coarse = status == STATUS_SOLVER;
+    const bool is_coarse = status == STATUS_SOLVER || status == STATUS_CONTACT;
     *error = fabs(walk->options->to - walk->options->from) * (is_coarse ? tolerance : fabs(x[k] - point->x[k]));
     return is_coarse ? STATUS_OK : status;
 }
@@ -472,7 +472,7 @@ static enum status locate_threshold(struct walk *walk, int at) {
     const int k = walk->n;
     const double way = walk->options->to - walk->options->from;
     struct branch_threshold threshold = {
-        .nearest = point, .value = point->value, .bar = NAN, .period = unstable->period};
+        .nearest = point, .value = point->value, .bar = NAN, .slope = NAN, .period = unstable->period};
     point->label = turns_near(walk, nearest) && unstable->period <= 0 ? fold : kind_of(branch, unstable);
     if (status == STATUS_OK) {
         // from the arclength to the key, which turns at a fold
@@ -489,7 +489,8 @@ static enum status locate_threshold(struct walk *walk, int at) {
         threshold.by_secant = bars[1];
         TRY(find_error_of_key(walk, nearest, &threshold.by_state));
         threshold.bar = threshold.by_error + threshold.by_secant + threshold.by_state;
-        threshold.slope = found.slope / rate;
+        // at a fold the excess has no slope over the key, which stands still
+        if (point->label != fold) threshold.slope = found.slope / rate;
     }
     threshold.is_fold = point->label == fold;
     threshold.is_unstable_above = is_unstable(branch->point[at]) == (branch->point[at]->value > threshold.value);

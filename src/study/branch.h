@@ -1,7 +1,8 @@
 /* branch.h: follows a branch of steady states along a key, for `shoal steady --continue` and `--threshold`: by
  * pseudo-arclength continuation (Keller 1977) through folds. Each fold and each loss of stability is located. An
  * equilibrium has no slow quantities; its branch has the key as its only coordinate. doc/steady.md. Tested by
- * tests/study/test_branch.sh, tests/app/test_threshold_command.sh and tests/solver/test_newton.c.
+ * tests/study/test_branch.sh and test_branch_walk.c, by tests/app/test_threshold_command.sh and by
+ * tests/solver/test_newton.c.
  *
  *     FOLDER/state-000.nc   steady state, as of `shoal steady`, in the order in which they were found
  *     FOLDER/study.nc       all of them in the order of the branch, written again after each of them */
@@ -54,7 +55,7 @@ struct branch_threshold {
     double by_error;                    /* error of the excess over the slope */
     double by_secant;                   /* length of the last secant */
     double by_state;                    /* what a tenth of steady.tolerance changes at the nearest point */
-    double slope;                       /* of the excess over the key */
+    double slope;                       /* of the excess over the key; NaN: at a fold, or the errors hide it */
     double period;                      /* of the nearest unstable point */
     bool is_fold;                       /* the key turns back there */
     bool is_unstable_above;             /* whether the state is unstable at the larger values of the key */

@@ -715,7 +715,7 @@ static void print_value(const struct error_study *study, int q, int f, FILE *str
             fprintf(stream, " (%.2g %%)", 100 * error / fabs(value));
         }
         if (study->relation == ERROR_VALUE && strcmp(quantity_of(study, q)->name, "steady_multiplier") == 0) {
-            fprintf(stream, ": %s", steady_verdict(value, error));
+            fprintf(stream, ": %s", steady_verdict(value - 1, error));
         }
 
         // numerical keys that could not be varied: ", without nodes, lifetime"

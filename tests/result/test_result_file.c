@@ -519,3 +519,15 @@ TEST_WITH(too_many_vortices_are_refused, set_up, tear_down) {
     assert_message(message);
     assert_int_equal(result_file_close(result, "failed"), STATUS_OK);
 }
+
+// ---- what a state is called
+
+TEST(a_state_is_stable_or_not_by_the_sign_of_its_excess) {
+    assert_string_equal(steady_verdict(-0.1, 0.05), "stable");
+    assert_string_equal(steady_verdict(0.1, 0.05), "unstable");
+    assert_string_equal(steady_verdict(0.1, 0.1), "undecided");
+
+    // a growth rate may be of any size
+    assert_string_equal(steady_verdict(1e-20, 0), "unstable");
+    assert_string_equal(steady_verdict(-1e-20, 0), "stable");
+}

@@ -1,0 +1,145 @@
+/* test_branch_walk.c: Tests the walk along a branch on models whose states and multipliers are formulas, so that each
+ * test can say what goes wrong where. test_branch.sh has branches of plates. */
+#define steady_run model_run
+#define steady_change model_change
+#define steady_refuse model_refuse
+#define member_file_read model_read
+#define study_file_write model_write
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "near.h"
+#include "study/branch.c"
+
+/* One slow quantity u, whose change in a beat is change(u, key); the multiplier exceeds 1 by excess(u, key). */
+static struct model {
+    double start; /* u of the state at FROM */
+    double (*change)(double u, double key), (*excess)(double u, double key);
+    bool touches; /* a second evaluation at a state near the threshold meets a contact */
+    double last;  /* u of the last state */
+} model;
+
+static double key_of(const struct case_values *values) {
+    return values->school.fish[0].motion.heave;
+}
+
+enum status model_refuse(const struct case_values *values) {
+    (void)values;
+    return STATUS_OK;
+}
+
+enum status model_change(const struct case_values *values, int n, const double *value, double *change,
+                         const volatile sig_atomic_t *stop) {
+    (void)stop;
+    const double key = key_of(values);
+    assert_int_equal(n, 1);
+    if (model.touches && fabs(value[0] - model.last) <= 0 && fabs(model.excess(value[0], key)) < 0.01) {
+        return status_fail(STATUS_CONTACT, "a and b touch");
+    }
+    change[0] = model.change(value[0], key);
+    return STATUS_OK;
+}
+
+enum status model_run(const struct case_values *values, const struct steady_options *options) {
+    const double u = options->hold ? options->hold->value[0] : model.start;
+    struct steady_point *const found = options->found;
+    found->n = 1;
+    found->has_beat = true;
+    NEW(found->arena, found->value, 1);
+    found->value[0] = model.last = u;
+    found->real = 1 + model.excess(u, key_of(values));
+    found->imaginary = 0;
+    found->error = 1e-4;
+    return STATUS_OK;
+}
+
+enum status model_read(struct arena *arena, struct member_file *member, const char *path) {
+    (void)path;
+    *member = (struct member_file){.status = "complete", .n_fish = 1};
+    member_file_create_values(arena, member, 1);
+    return STATUS_OK;
+}
+
+enum status model_write(struct arena *arena, const char *path, const struct case_values *study,
+                        const struct member_file *members, const struct convergence_orders *orders,
+                        const struct error_sweep *error, const char *command) {
+    (void)arena, (void)path, (void)study, (void)members, (void)orders, (void)error, (void)command;
+    return STATUS_OK;
+}
+
+/* Follow the branch of the model while the heave goes from one value to another. */
+static enum status follow_model(struct arena *arena, double from, double to, struct branch **branch) {
+    static const char text[] =
+        "format: 1\ntime: {end: 1, shedding_interval: 0.05}\nsteady: {tolerance: 1e-6}\n"
+        "fish: [{motion: {prescribed: all, surge: free, heave: 0.15, frequency: 1}}]\n";
+    struct case_values values;
+    char folder[] = "/tmp/test_branch.XXXXXX";
+    assert_int_equal(case_parse(&values, text, strlen(text), "model", ".", 0, NULL), STATUS_OK);
+    arena_move(values.arena, arena);
+    assert_non_null(mkdtemp(folder));
+    const struct branch_options options = {.option = "--continue",
+                                           .key = "fish[0].motion.heave",
+                                           .from = from,
+                                           .to = to,
+                                           .origin = "model",
+                                           .folder = folder};
+    const enum status status = branch_follow(arena, &values, &options, branch);
+    study_folder_remove(folder);
+    return status;
+}
+
+/* The state moves with the key. */
+static double change_of_line(double u, double key) {
+    return key - u;
+}
+
+static double excess_of_line(double u, double key) {
+    (void)u;
+    return key - 0.6;
+}
+
+/* Two states that meet at a key of 0.5. */
+static double change_of_fold(double u, double key) {
+    return key - 0.5 - u * u;
+}
+
+static double excess_of_fold(double u, double key) {
+    (void)key;
+    return -u / 2;
+}
+
+TEST(a_threshold_has_its_value_and_slope) {
+    struct branch *branch;
+    ARENA(arena, NULL, "a test");
+    model = (struct model){.start = 0.4, .change = change_of_line, .excess = excess_of_line};
+    assert_int_equal(follow_model(arena, 0.4, 0.9, &branch), STATUS_OK);
+    assert_int_equal(branch->n_thresholds, 1);
+    NEAR(branch->threshold[0].value, 0.6, branch->threshold[0].bar, 0);
+    NEAR(branch->threshold[0].slope, 1, 1e-6, 0);
+    assert_true(branch->threshold[0].is_unstable_above);
+}
+
+TEST(a_contact_during_the_finer_correction_keeps_the_threshold) {
+    struct branch *branch;
+    ARENA(arena, NULL, "a test");
+    model = (struct model){.start = 0.4, .change = change_of_line, .excess = excess_of_line, .touches = true};
+    assert_int_equal(follow_model(arena, 0.4, 0.9, &branch), STATUS_OK);
+    assert_int_equal(branch->n_thresholds, 1);
+    NEAR(branch->threshold[0].value, 0.6, branch->threshold[0].bar, 0);
+
+    // the part of the state is then the tolerance, of the way from 0.4 to 0.9
+    NEAR(branch->threshold[0].by_state, 0.5e-6, 1e-12, 0);
+}
+
+TEST(a_fold_has_no_slope_over_the_key) {
+    struct branch *branch;
+    ARENA(arena, NULL, "a test");
+    model = (struct model){.start = 0.5, .change = change_of_fold, .excess = excess_of_fold};
+    assert_int_equal(follow_model(arena, 0.75, 0.25, &branch), STATUS_OK);
+    assert_int_equal(branch->n_thresholds, 1);
+    assert_true(branch->threshold[0].is_fold);
+
+    // the states are known to the tolerance, and so is the key where they turn
+    NEAR(branch->threshold[0].value, 0.5, 1e-6, 0);
+    assert_true(isnan(branch->threshold[0].slope));
+}
