@@ -68,6 +68,7 @@ int sweep_member_before(const struct case_values *study, int member) {
     for (int a = study->n_axes - 1; a >= 0; a--) {
         const struct sweep_axis *const axis = &study->sweep[a];
         const int value = sweep_member_value(study, member, a), before = axis->before ? axis->before[value] : value - 1;
+        if (axis->steady && axis->is_start && !axis->before) return -1;
         if (axis->steady) return before >= 0 ? member - (value - before) * stride : -1;
         stride *= study->sweep[a].n_values;
     }
@@ -126,6 +127,19 @@ double sweep_reference(const struct case_values *study, int axis, int quantity, 
 }
 
 // ---- keys and values of an axis
+
+/* Whether a steady state supplies the value of this key to the search that starts from it: of a fish (CASE_EVERY_FISH:
+ * of any) that is free to move; the first fish keeps its position. */
+static bool is_start(const struct school_parameters *school, const struct key *key, int fish) {
+    const bool is_position = strcmp(key->path, "fish.start.position") == 0;
+    if (!is_position && strcmp(key->path, "fish.start.speed") != 0) return false;
+    for (int f = is_position ? 1 : 0; f < school->n_fish; f++) {
+        const struct motion_parameters *const motion = &school->fish[f].motion;
+        const bool is_free = motion->prescribed == PRESCRIBED_NONE || motion->surge == SURGE_FREE;
+        if (is_free && (fish == CASE_EVERY_FISH || fish == f)) return true;
+    }
+    return false;
+}
 
 /* Read "key", or "keys"; the row of a wrong key in axis->key is NULL. */
 static void axis_read_keys(struct axis *axis) {
@@ -187,6 +201,7 @@ static void axis_read_keys(struct axis *axis) {
         }
 
         axis->key[n] = key;
+        axis->into->is_start |= is_start(school, key, path.fish);
         axis->into->key[n] =
             (struct sweep_key){.path = arena_text(axis->values->arena, "%s", written),
                                .row = key->path,

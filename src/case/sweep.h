@@ -27,6 +27,7 @@ struct sweep_axis {
                              (n_values * n_keys) */
     bool refine;          /* the values are resolutions of the first key: a study of convergence */
     bool steady;          /* members are steady states; each search starts from the state of the previous value */
+    bool is_start;        /* places or speeds from which a search starts: none starts from the previous state */
     int *before;          /* start from the state of this value instead, -1: start of the case; NULL     (n_values) */
     bool *is_against;     /* run the case of error.against; NULL: no value does                            (n_values) */
     bool is_relative;     /* the results of all members are also divided by those of the members with one value: */
@@ -49,7 +50,7 @@ int sweep_n_members(const struct case_values *study);
 int sweep_member_value(const struct case_values *study, int member, int axis);
 
 /* True if the members are steady states: an axis has `steady`. The search of a member starts from the result of the
- * member with the previous value of that axis; -1 for the first value. */
+ * member with the previous value of that axis; -1 for the first value, and for all values that are starts. */
 bool sweep_is_steady(const struct case_values *study);
 int sweep_member_before(const struct case_values *study, int member);
 

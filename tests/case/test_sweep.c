@@ -52,6 +52,33 @@ TEST(members_are_numbered_with_the_last_axis_fastest) {
                         "time.shedding_interval=0.05, fish[*].nodes=9, fish[1].name=\"a: b\"");
 }
 
+/* A search that starts from the previous state would start from its places and speeds instead of the swept ones. */
+TEST(swept_starts_of_free_fish_are_not_those_of_the_previous_state) {
+    static const struct {
+        const char *key, *values, *motion;
+        int before;
+    } axes[] = {
+        {"fish[1].start.position", "[[2, 0], [3, 0]]", "", -1},
+        {"fish[*].start.position", "[[2, 0], [3, 0]]", "prescribed: all, surge: free", -1},
+        {"fish[*].start.speed", "[1, 2]", "", -1},
+        {"fish[0].start.position", "[[2, 0], [3, 0]]", "", 0},  // the others follow it
+        {"fish[1].start.position", "[[2, 0], [3, 0]]", "prescribed: all", 0},
+        {"fish[*].start.speed", "[1, 2]", "prescribed: all", 0},
+        {"fish[1].start.heading", "[0, 1]", "", 0},
+        {"fish[1].wave.amplitude", "[0.1, 0.2]", "", 0},
+    };
+    for (size_t i = 0; i < sizeof axes / sizeof *axes; i++) {
+        char text[500];
+        snprintf(
+            text, sizeof text,
+            "format: 1\ntime: {end: 1}\ndefaults: {fish: {motion: {%s}}}\nfish: [{}, {start: {position: [0, 1]}}]\n"
+            "sweep: [{key: \"%s\", values: %s, steady: true}]\n",
+            axes[i].motion, axes[i].key, axes[i].values);
+        const struct case_values s = parse(text);
+        assert_int_equal(sweep_member_before(&s, 1), axes[i].before);
+    }
+}
+
 TEST(the_merged_text_is_the_complete_study) {
     struct case_values study = parse_with(zipped, "fish[0].length=2", "wake.decay=0.1", NULL);
     struct case_values again = parse(study.merged);
