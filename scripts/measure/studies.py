@@ -19,6 +19,40 @@ DEFAULTS = {
 }
 
 
+def finest(study):
+    """Assignments of one run that is finer in all keys of an error study together than its finest level in each of them."""
+    sets = []
+    for k, key in enumerate(strings(study["key_name"])):
+        if study["key_levels"][k] < 2:
+            continue
+        level = float(study["key_value"][k, 0])
+        is_grid = key.startswith("fish.") or key == "time.shedding_interval"
+        sets += finer(key, level if is_grid else level / 2 if key == "wake.lifetime" else level * 10)
+    return sets
+
+
+def true_values(bench, path, of, sets):
+    """Quantities of all fish in one run, or in one steady state."""
+    is_steady = of[0].startswith("steady_")
+    true = os.path.join(bench.folder, "true.nc")
+    words = [word for one in sets + ["steady.multipliers=false"] * is_steady for word in ("--set", one)]
+    bench.call("steady" if is_steady else "run", path, "-q", "--force", "-o", true, *words)
+    result = open_study(true)
+    last = {quantity: result[quantity][:] if is_steady else result[quantity][-1] for quantity in of if quantity in result.variables}
+    return {quantity: np.atleast_1d(value) for quantity, value in last.items()}
+
+
+def bar_cells(value, bar, true):
+    """Value, bar, true error and their ratio, as cells of a table; and the ratio."""
+    error = abs(true - value)
+    return [f"{value:.5g}", f"{bar / abs(value):.2e}", f"{error / abs(value):.2e}", f"{bar / error:.2f}"], bar / error
+
+
+def inside(ratios):
+    """The last row of a table of bars."""
+    return f"{sum(ratio >= 1 for ratio in ratios)} of {len(ratios)} inside", "", "", "", "median", f"{np.median(ratios):.2f}"
+
+
 @table("case", "quantity", "value", "bar / value", "error / value", "bar over error")
 def bars_of_defaults(bench):
     """bars of 18 numbers against runs with all numerical keys refined together (10 minutes)"""
@@ -29,23 +63,86 @@ def bars_of_defaults(bench):
         words = [word for one in sets for word in ("--set", one)]
         bench.call("error", path, "-q", "--force", "-o", folder, *words, *[word for q in of for word in ("--of", q)])
         study = open_study(os.path.join(folder, "study.nc"))
-        refined = ["steady.multipliers=false"]
-        for k, key in enumerate(strings(study["key_name"])):
-            if study["key_levels"][k] < 2:
-                continue
-            finest = float(study["key_value"][k, 0])
-            is_grid = key.startswith("fish.") or key == "time.shedding_interval"
-            refined += finer(key, finest if is_grid else finest / 2 if key == "wake.lifetime" else finest * 10)
-        true = os.path.join(bench.folder, "true.nc")
-        bench.call("steady", path, "-q", "--force", "-o", true, *words, *[word for one in refined for word in ("--set", one)])
-        result = open_study(true)
+        true = true_values(bench, path, of, sets + finest(study))
         for quantity in of:
-            value, bar = (float(study[f"{what}_{quantity}"][0]) for what in ("stated", "bar"))
-            error = abs(float(result[quantity][0]) - value)
-            ratios.append(bar / error)
-            yield (name, quantity.removeprefix("steady_"), f"{value:.5g}", f"{bar / abs(value):.2e}", f"{error / abs(value):.2e}",
-                   f"{ratios[-1]:.2f}")
-    yield f"{sum(ratio >= 1 for ratio in ratios)} of {len(ratios)} inside", "", "", "", "median", f"{np.median(ratios):.2f}"
+            cells, ratio = bar_cells(*(float(study[f"{what}_{quantity}"][0]) for what in ("stated", "bar")), true[quantity][0])
+            ratios.append(ratio)
+            yield name, quantity.removeprefix("steady_"), *cells
+    yield inside(ratios)
+
+
+def pairs():
+    """Pairs that studies ask for: name, quantity, text of the case, and of the other case or FISH=FISH."""
+
+    def swim(fish, body="control: {law: course}"):
+        return ("format: 1\ntime: {end: 4, shedding_interval: 0.02, output_interval: 0.1}\n"
+                f"defaults: {{fish: {{nodes: 17, start: {{speed: 0.8}}, {body}}}}}\nfish: [{fish}]\n")
+
+    def steady(body):
+        return f"format: 1\ntime: {{end: 20, shedding_interval: 0.02}}\nfish: [{{name: fish, nodes: 17, {body}}}]\n"
+
+    def plates(gap):
+        return ("format: 1\ntime: {end: 3, shedding_interval: 0.02, output_interval: 0.1}\nfluid: {density: 1, viscosity: 2e-3}\n"
+                "defaults:\n  fish: {nodes: 9, force: pressure, pressure: {span: infinite, suction_limit: 0}, start: {speed: 2}, "
+                f"{STILL}, body: {{profile: uniform, thickness: 0.05, depth: 1, density: 20, modulus: 1e6}}, "
+                "motion: {prescribed: all, heave: 0.1, frequency: 1}}\n"
+                f"fish: [{{name: leader}}, {{name: follower, start: {{position: [{1 + gap:g}, 0]}}}}]\n")
+
+    def foil(modulus):
+        return ("format: 1\ntime: {end: 20, shedding_interval: 0.02, output_interval: 0.1}\n"
+                "fluid: {density: 1, velocity: [1, 0], viscosity: 0}\nwake: {lifetime: 20}\n"
+                "fish: [{name: foil, force: pressure, pressure: {span: infinite, suction_limit: 0}, start: {heading: 174, speed: 0}, "
+                f"{STILL}, body: {{profile: uniform, thickness: 0.05, depth: 1, density: 25.465, modulus: {modulus:g}}}, "
+                "motion: {prescribed: head}}]\n")
+
+    cost, alone = "cost_of_transport", swim("{name: alone}")
+    behind = "{name: leader}, {name: follower, start: {position: [1.4, 0.3]}}"
+    beside = "{name: right}, {name: left, start: {position: [0, 0.5]}, wave: {phase: PHASE}}"
+    in_phase, opposite = (swim(beside.replace("PHASE", phase)) for phase in ("0", "180"))
+    yield "follower, alone", cost, swim(behind), alone
+    yield "follower, leader", cost, swim(behind), "follower=leader"
+    yield "antiphase, in phase", cost, opposite, in_phase
+    yield "side by side, alone", cost, in_phase, alone
+    yield "with control, without", cost, swim(behind), swim(behind, "control: {}")
+    yield "plates, gap 1 and 1.5", "mean_thrust", plates(1), plates(1.5)
+    yield "modulus 3e6, 1.5e6", f"steady_{cost}", steady("body: {modulus: 3e6}"), steady("body: {}")
+    yield "frequency 2, 1", "steady_speed", steady("wave: {frequency: 2}"), steady("body: {}")
+    yield "amplitude 0.5, 0.4", "steady_efficiency", steady("wave: {amplitude: 0.5}"), steady("body: {}")
+    yield "foil, modulus 5e4, 1e5", "steady_lift", foil(5e4), foil(1e5)
+
+
+@table("pair", "quantity", "ratio", "bar / ratio", "error / ratio", "bar over error", "the same of the difference")
+def bars_of_pairs(bench):
+    """bars of the ratios of ten pairs against runs of both cases with all numerical keys refined together (10 minutes)"""
+    ratios, changes, known = [], [], {}
+
+    def true_value(path, text, quantity, sets):
+        """The quantity of the last fish and of the first; a case that is in several pairs runs once."""
+        key = (text, *sets)
+        if key not in known:
+            known[key] = true_values(bench, path, STEADY if quantity in STEADY else [quantity], sets)
+        return known[key][quantity][-1], known[key][quantity][0]
+
+    for number, (name, quantity, text, other) in enumerate(pairs()):
+        case, against = (os.path.join(bench.folder, f"{number}-{what}.yaml") for what in ("case", "against"))
+        is_school = "\n" not in other
+        for path, words in ((case, text), (against, other))[:1 if is_school else 2]:
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(words)
+        folder = os.path.join(bench.folder, f"{number}-pair")
+        bench.call("error", case, "-q", "-o", folder, "--of", quantity, "--against", other if is_school else against)
+        study = open_study(os.path.join(folder, "study.nc"))
+        sets = finest(study)
+        true, leader = true_value(case, text, quantity, sets)
+        compared = leader if is_school else true_value(against, other, quantity, sets)[0]
+        stated = {f"{what}_{of}": float(np.ravel(study[f"{what}_{of}_{quantity}"])[-1])
+                  for what in ("stated", "bar") for of in ("ratio", "change")}
+        cells, ratio = bar_cells(stated["stated_ratio"], stated["bar_ratio"], true / compared)
+        change = bar_cells(stated["stated_change"], stated["bar_change"], true - compared)[1]
+        ratios.append(ratio)
+        changes.append(change)
+        yield name, quantity.removeprefix("steady_"), *cells, f"{change:.2f}"
+    yield (*inside(ratios), f"{np.median(changes):.2f}")
 
 
 # Quantities of cases outside the choice of the rule; quantities of runs include the judges of an error study.
@@ -119,20 +216,14 @@ def coverage_of(bench, number, of, keys, text):
     for k, key in enumerate(strings(study["key_name"])):
         if study["key_levels"][k] < 2:
             continue
-        is_steady = of[0].startswith("steady_")
-        sets = finer(key, float(study["key_value"][k, 0])) + ["steady.multipliers=false"] * is_steady
-        true = os.path.join(bench.folder, "true.nc")
-        bench.call("steady" if is_steady else "run", plain, "-q", "--force", "-o", true,
-                   *[word for one in sets for word in ("--set", one)])
-        result = open_study(true)
+        true = true_values(bench, plain, of, finer(key, float(study["key_value"][k, 0])))
         base = int(study["key_member"][k, study["key_stated"][k]])
         # a study computes some quantities, which a result does not state
-        for quantity in [name for name in of if name in result.variables]:
+        for quantity, last in true.items():
             values, flags = study[quantity][base], study[f"key_flag_{quantity}"][k]
             for f, value in enumerate(np.atleast_1d(values)):
-                last = result[quantity][:] if is_steady else result[quantity][-1]
-                yield (float(study[f"part_{quantity}"][k, f]) / abs(value),
-                       abs(float(np.atleast_1d(last)[f]) - value) / abs(value), bytes(flags[f]).strip(b"\0 ") != b"")
+                yield (float(study[f"part_{quantity}"][k, f]) / abs(value), abs(float(last[f]) - value) / abs(value),
+                       bytes(flags[f]).strip(b"\0 ") != b"")
 
 
 def share(covered):
