@@ -164,10 +164,14 @@ void flow_from_nodes(const struct flow *flow, int f, const double *of_nodes, dou
     to[flow_tail(fish)] = of_nodes[fish->n_nodes - 1];
 }
 
-static void flow_place_wake(const struct flow *flow, const struct state *state, int f, bool is_new) {
+// what has happened to the wakes since their sources were built: nothing, new velocities, or anything
+enum wake_change { WAKE_SAME, WAKE_TURNED, WAKE_ANEW };
+
+static void flow_place_wake(const struct flow *flow, const struct state *state, int f, enum wake_change change) {
     const struct wake *const wake = &state->wake[f];
     struct sheet *const sheet = &flow->fish[f].wake;
-    if (is_new) sheet_build(sheet, &flow->school->fish[f], flow->school, wake, state->t);
+    if (change == WAKE_ANEW) sheet_build(sheet, &flow->school->fish[f], flow->school, wake, state->t);
+    if (change == WAKE_TURNED) sheet_turn(sheet, &flow->school->fish[f], flow->school, wake);
     sheet_place(sheet, &flow->school->fish[f], flow->school, wake, state->t, flow->t - state->t);
 }
 
@@ -238,27 +242,33 @@ enum status flow_check_steady(const struct school *school) {
 
 void flow_place_released(struct flow *flow, const struct state *state, double t) {
     const struct school *const school = flow->school;
-    const unsigned long version = state_wake_version(state, school);
-    const bool is_new = !flow->has_sources || flow->version != version;
+    const unsigned long version = state_wake_version(state, school), n_turns = state_wake_turns(state, school);
+    enum wake_change change = WAKE_SAME;
+    if (!flow->has_sources || flow->version - flow->n_turns != version - n_turns) {
+        change = WAKE_ANEW;
+    } else if (flow->version != version) {
+        change = WAKE_TURNED;
+    }
 
     // released points move on known paths, so their positions at one time do not depend on y
-    if (!is_new && flow->t == t) return;
+    if (change == WAKE_SAME && flow->t == t) return;
     flow->has_sources = false;
     flow->version = version;
+    flow->n_turns = n_turns;
     flow->t = t;
 
     // if the wakes have changed, choose the points that represent them again
     int n_placed = 0;
     for (int f = 0; f < school->n_fish; f++) {
-        n_placed += (is_new ? 4 : 2) * state->wake[f].n_vortex;
-        if (is_new) sheet_reserve(flow->arena, &flow->fish[f].wake, state->wake[f].n_vortex);
+        n_placed += (change == WAKE_ANEW ? 4 : 2) * state->wake[f].n_vortex;
+        if (change == WAKE_ANEW) sheet_reserve(flow->arena, &flow->fish[f].wake, state->wake[f].n_vortex);
     }
     const int threads = parallel_threads(school->threads, school->n_fish, n_placed, PARALLEL_VORTICES);
     if (threads == 1) {
-        for (int f = 0; f < school->n_fish; f++) flow_place_wake(flow, state, f, is_new);
+        for (int f = 0; f < school->n_fish; f++) flow_place_wake(flow, state, f, change);
     } else {
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
-        for (int f = 0; f < school->n_fish; f++) flow_place_wake(flow, state, f, is_new);
+        for (int f = 0; f < school->n_fish; f++) flow_place_wake(flow, state, f, change);
     }
     flow->has_sources = !flow->is_steady;
 }

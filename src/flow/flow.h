@@ -68,8 +68,8 @@ struct flow {
     bool is_steady;
     const volatile sig_atomic_t *stop; /* once *stop is not 0, flow_gradient abandons its sums; or NULL */
     double t;                          /* time of the sources, s */
-    unsigned long version;             /* version of the wakes from which the sources were built */
-    bool has_sources;                  /* whether the sources have been placed */
+    unsigned long version, n_turns; /* of the wakes from which the sources were built: changes, of velocities alone */
+    bool has_sources;               /* whether the sources have been placed */
 
     int n_classes;
     struct flow_class *classes; /*                                                      (n_classes) */

@@ -94,6 +94,12 @@ unsigned long state_wake_version(const struct state *state, const struct school 
     return version;
 }
 
+unsigned long state_wake_turns(const struct state *state, const struct school *school) {
+    unsigned long n_turns = 0;
+    for (int f = 0; f < school->n_fish; f++) n_turns += state->wake[f].n_turns;
+    return n_turns;
+}
+
 // zeroed slots behind the slots of a history
 static void history_resize(struct arena *arena, struct history *history, int n_slots) {
     if (n_slots == history->n_slots && history->sample) return;
@@ -156,6 +162,7 @@ const struct state_row state_table[] = {
     {"wake.arena", OF_WAKE(STATE_UNKEPT, arena), STATE_NO_ARRAY},
     {"wake.forms", OF_WAKE(STATE_UNKEPT, forms), STATE_NO_ARRAY},
     {"wake.version", OF_WAKE(STATE_UNKEPT, version), STATE_NO_ARRAY},
+    {"wake.n_turns", OF_WAKE(STATE_UNKEPT, n_turns), STATE_NO_ARRAY},
     {"wake.n_vortex", OF_WAKE(STATE_INTEGER, n_vortex), STATE_NO_ARRAY},
     {"wake.capacity", OF_WAKE(STATE_UNKEPT, capacity), STATE_NO_ARRAY},
     {"wake.x", OF_WAKE(STATE_REAL, x), STATE_VORTICES},

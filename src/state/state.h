@@ -118,8 +118,9 @@ void state_find_rates(struct state *state, const struct school *school, bool she
 /* Discard the events before a jump; the next rates begin with the present unknowns. */
 void state_begin_rates(struct state *state, const struct school *school);
 
-/* A number that changes with every change of any wake. */
+/* A number that changes with every change of any wake, and how many of the changes were of velocities alone. */
 unsigned long state_wake_version(const struct state *state, const struct school *school);
+unsigned long state_wake_turns(const struct state *state, const struct school *school);
 
 /* Make room for the next sample of every fish. */
 void state_reserve(struct state *state, const struct school *school);

@@ -105,12 +105,16 @@ static void markers_at(struct sheet *sheet, const struct school *school, const s
     double *const x = sheet->x[end] + SHEET_PAD, *const y = sheet->y[end] + SHEET_PAD;
     wake_places(wake, school->interval, tau, x, y);
     set_distances(wake, tau, x, y, sheet->distance[end]);
-    for (int i = 0; i < wake->n_vortex; i++) sheet->remains[end][i] = wake_part_of_label(wake, school, t, end, i);
+    wake_parts_of_labels(wake, school, t, end, sheet->remains[end]);
 }
 
-// the values of a point at the start or at the end of the interval
-static void point_at(const struct sheet *sheet, const struct sheet_points *points, const struct fish *fish,
-                     const struct school *school, const struct wake *wake, double t, int i, int end) {
+// the smoothing of a point at the start or at the end of the interval
+static void point_smooth(const struct sheet *sheet, const struct sheet_points *points, const struct fish *fish,
+                         const struct school *school, const struct wake *wake, int i, int end) {
+    // middles are sources for other targets, with the full smoothing of the pair
+    points->smoothing[end][i] = 0;
+    if (points != &sheet->graded) return;
+
     const int newest = wake->n_vortex - 1, newer = points->newer[i], older = points->older[i];
     const double tau = end * school->interval, xi = points->xi[i];
     const double *const x = sheet->x[end] + SHEET_PAD, *const y = sheet->y[end] + SHEET_PAD;
@@ -120,13 +124,15 @@ static void point_at(const struct sheet *sheet, const struct sheet_points *point
     // beyond this square of the distance the taper differs from 1 by exp(-ratio^2) = 3e-14, for any tangent
     const double taper = fmax(fish->taper, fish->taper_beside), far = 5.5677643628300219 * taper * taper;
     const bool is_far = from_tail[0] * from_tail[0] + from_tail[1] * from_tail[1] > far;
+    points->smoothing[end][i] = is_far ? fish->smoothing : sheet_taper(fish, from_tail, wake->tail_tangent);
+}
 
-    // middles are sources for other targets, with the full smoothing of the pair
-    points->smoothing[end][i] = 0;
-    if (points == &sheet->graded) {
-        points->smoothing[end][i] = is_far ? fish->smoothing : sheet_taper(fish, from_tail, wake->tail_tangent);
-    }
-    const double *const distance = sheet->distance[end];
+// the values of a point at the start or at the end of the interval
+static void point_at(const struct sheet *sheet, const struct sheet_points *points, const struct fish *fish,
+                     const struct school *school, const struct wake *wake, double t, int i, int end) {
+    const int newer = points->newer[i], older = points->older[i];
+    const double xi = points->xi[i], *const distance = sheet->distance[end];
+    point_smooth(sheet, points, fish, school, wake, i, end);
     points->leg[end][i] = sheet_leg(fish, (1 - xi) * distance[newer] + xi * distance[older]);
     points->remains[end][i] = newer == older ? wake_part_of_marker(wake, school, t, end, newer)
                                              : wake_part_of_stretch(wake, school, t, end, older);
@@ -241,6 +247,11 @@ void sheet_build(struct sheet *sheet, const struct fish *fish, const struct scho
         sources_append(sources, both[view]->n_released + both[view]->n_nascent);
         for (int i = 0; i < sources->n; i++) sources->half[i] = fish->strip_depth * fish->strip_depth / 32;
     }
+}
+
+void sheet_turn(struct sheet *sheet, const struct fish *fish, const struct school *school, const struct wake *wake) {
+    sheet->has_end = false;
+    for (int i = 0; i < sheet->graded.n_released; i++) point_smooth(sheet, &sheet->graded, fish, school, wake, i, 0);
 }
 
 // set source i of a stretch with the labels newer and older at these ends

@@ -85,6 +85,10 @@ void sheet_reserve(struct arena *arena, struct sheet *sheet, int n);
 void sheet_build(struct sheet *sheet, const struct fish *fish, const struct school *school, const struct wake *wake,
                  double t);
 
+/* The same, if the wake for which the sheet was built has got new velocities, which change the end of the interval, and
+ * a new direction of the tail, on which the smoothing near the tail depends. */
+void sheet_turn(struct sheet *sheet, const struct fish *fish, const struct school *school, const struct wake *wake);
+
 /* Set the released points to the time tau after the event at time t. The values at the end of the interval are found
  * by the first call with tau > 0: a sheet that is built for the velocities at an event does not need them. */
 void sheet_place(struct sheet *sheet, const struct fish *fish, const struct school *school, const struct wake *wake,

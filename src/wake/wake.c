@@ -76,6 +76,7 @@ static double age_of_decay(const struct school *school) {
 
 void wake_set_tail(struct wake *wake, const double velocity[2], const double tangent[2]) {
     wake->version++;
+    wake->n_turns++;
     memcpy(wake->tail_velocity, velocity, sizeof wake->tail_velocity);
     memcpy(wake->tail_tangent, tangent, sizeof wake->tail_tangent);
 }
@@ -107,8 +108,13 @@ double wake_source(const struct wake *wake, int i) {
     return wake->has_markers ? wake->circulation[i + 1] - wake->circulation[i] : wake->circulation[i];
 }
 
+// whether a vortex of this age keeps its whole strength until the next event
+static bool is_whole(const struct school *school, double age) {
+    return age + school->interval <= age_of_decay(school);
+}
+
 double wake_strength_within(const struct school *school, double age, double q) {
-    if (age + school->interval <= age_of_decay(school)) return 1;
+    if (is_whole(school, age)) return 1;
     const double now = wake_strength(school, age), next = wake_strength(school, age + school->interval);
     return now + q * (next - now);
 }
@@ -123,6 +129,15 @@ void wake_places(const struct wake *wake, double interval, double tau, double *r
 double wake_part_of_label(const struct wake *wake, const struct school *school, double t, double q, int i) {
     if (wake->has_markers && !school->finite) return 1;
     return wake_strength_within(school, t - wake->birth[i], q);
+}
+
+void wake_parts_of_labels(const struct wake *wake, const struct school *school, double t, double q, double *part) {
+    // from the first whole label on all are whole, because births are in order
+    int i = 0;
+    for (; i < wake->n_vortex && !is_whole(school, t - wake->birth[i]); i++) {
+        part[i] = wake_part_of_label(wake, school, t, q, i);
+    }
+    for (; i < wake->n_vortex; i++) part[i] = 1;
 }
 
 double wake_part_of_stretch(const struct wake *wake, const struct school *school, double t, double q, int j) {
@@ -301,6 +316,7 @@ void wake_set_velocity(struct wake *wake, const double *u, const double *v, cons
     double *const before[] = {wake->u_before, wake->v_before, wake->rate_before};
 
     wake->version++;
+    wake->n_turns++;
     for (int i = 0; i < (rate ? 3 : 2); i++) {
         memcpy(before[i], now[i], (size_t)n_old * sizeof *u);
         memcpy(before[i] + n_old, from[i] + n_old, (size_t)n_new * sizeof *u);

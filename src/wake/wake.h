@@ -23,6 +23,7 @@ struct wake {
     struct arena *arena;               /* of the owner: the state */
     const struct stretch_forms *forms; /* stretch.h; of all wakes */
     unsigned long version;             /* counter of changes of the vortices below; identifies derived data */
+    unsigned long n_turns;             /* how many of these changes were of velocities and rates alone */
     int n_vortex, capacity;
     double *x, *y;               /* position at the last event, m                     (n_vortex) */
     double *u, *v;               /* velocity W at the last event, m s-1               (n_vortex) */
@@ -60,11 +61,12 @@ double wake_label(const struct wake *wake, int i, double interval, double tau);
 void wake_labels(const struct wake *wake, double interval, double tau, double *restrict label);
 
 /* What remains of the label of marker i, or of vortex i, at the fraction q of the interval after the event at time t;
- * of young stretch j; of the circulation of old marker i (stretch.h). With span: finite the labels decay, so that rings
- * stay closed, else circulations. */
+ * of young stretch j; of the circulation of old marker i (stretch.h); of all labels (n_vortex). With span: finite the
+ * labels decay, so that rings stay closed, else circulations. */
 double wake_part_of_label(const struct wake *wake, const struct school *school, double t, double q, int i);
 double wake_part_of_stretch(const struct wake *wake, const struct school *school, double t, double q, int j);
 double wake_part_of_marker(const struct wake *wake, const struct school *school, double t, double q, int i);
+void wake_parts_of_labels(const struct wake *wake, const struct school *school, double t, double q, double *part);
 
 /* The label of marker i, or the circulation of vortex i, at the time tau after the event at time t, times what remains;
  * of all (n_vortex). */

@@ -55,6 +55,34 @@ static double label_of(const struct setup *setup, const struct wake *wake, int i
     return sum;
 }
 
+/* After the velocities of an event, sources that are built for the markers already only turn: they have the bits of
+ * sources that are built anew. */
+TEST_OF_KERNELS(new_velocities_turn_the_sources_that_are_there) {
+    char text[512];
+    snprintf(text, sizeof text, "time: {end: 2, shedding_interval: 0.02}\nwake: {lifetime: 1.2}\n" ONE,
+             kind == INFINITE ? "infinite" : "finite");
+    struct simulation *const simulation = school_simulation(text);
+    school_run(simulation, 1.6);
+    struct flow *const turned = simulation->residual->flow, *const anew = flow_create(test_arena(), simulation->school);
+    const struct state *const state = simulation->state;
+    const double t = state->t + 0.3 * simulation->school->interval;
+    const unsigned long version = state_wake_version(state, simulation->school);
+    const unsigned long n_turns = state_wake_turns(state, simulation->school);
+    assert_int_not_equal(turned->version, version);
+    assert_int_equal(turned->version - turned->n_turns, version - n_turns);
+    flow_place(turned, state, t, state->y);
+    flow_place(anew, state, t, state->y);
+    for (int view = 0; view < 2; view++) {
+        const struct sheet *const one = &turned->fish[0].wake, *const other = &anew->fish[0].wake;
+        const struct sources *const a = view == 0 ? &one->graded.sources : &one->middles.sources;
+        const struct sources *const b = view == 0 ? &other->graded.sources : &other->middles.sources;
+        const double *const from[] = {a->x, a->y, a->q, a->dx, a->dy, a->half, a->leg, a->square};
+        const double *const to[] = {b->x, b->y, b->q, b->dx, b->dy, b->half, b->leg, b->square};
+        assert_int_equal(a->n, b->n);
+        for (int i = 0; i < 8; i++) assert_memory_equal(from[i], to[i], (size_t)a->n * sizeof(double));
+    }
+}
+
 /* Velocity and divergence at a target. */
 struct felt {
     double u, v, div;

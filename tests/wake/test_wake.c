@@ -136,6 +136,22 @@ TEST(strength_within_an_interval_joins_the_strengths_at_its_ends) {
     }
 }
 
+TEST(labels_together_have_the_parts_of_each_alone) {
+    static const char *const spans[] = {"finite", "infinite"};
+    for (int k = 0; k < 2; k++) {
+        struct setup setup = setup_with(
+            SMALL "wake: {lifetime: 0.3, decay: 0.2}\nfish: [{force: pressure, pressure: {span: %s}}]\n", spans[k]);
+        struct wake *const wake = &setup.state->wake[0];
+        wake->has_markers = true;
+        for (int i = 0; i < 17; i++) wake_release(wake, i, -i, i * i, 0.02 * i);
+        double part[17];
+        wake_parts_of_labels(wake, setup.school, 0.32, 0.4, part);
+        for (int i = 0; i < 17; i++) NEAR(part[i], wake_part_of_label(wake, setup.school, 0.32, 0.4, i), 0, 0);
+        if (k == 0) BELOW(part[1], 0.5);
+        NEAR(part[16], 1, 0, 0);
+    }
+}
+
 TEST(old_vortices_go_and_leave_their_circulation) {
     struct setup setup = setup_of(SMALL "wake: {shedding: continuous, lifetime: 0.1}\nfish: [{}]\n");
     struct wake *wake = &setup.state->wake[0];
