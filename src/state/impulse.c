@@ -20,65 +20,55 @@ void impulse_add_stretch(struct impulse_moments *sum, double circulation, const 
     impulse_add(sum, circulation / 2, other[0], other[1]);
 }
 
-/* Which strengths a wake has: none, those without decay, or those that are left at the fraction q of the interval. */
+/* Which strengths a wake has: those at the fraction q of the interval; their change, those at q less those at `less`;
+ * or their loss, those without decay less those at q. */
 struct strengths {
-    bool exist, decay;
-    double q;
+    enum { STRENGTHS, CHANGE, LOSS } kind;
+    double q, less;
 };
-static const struct strengths nothing = {.exist = false}, undecayed = {.exist = true};
 
-static struct strengths strengths_at(double q) {
-    return (struct strengths){.exist = true, .decay = true, .q = q};
+/* What remains by one of the functions wake_part_of_label, _stretch and _marker, or the change of it. Of the three only
+ * one decays, as the span asks, so a change of strengths has the change of this part and the others themselves. */
+typedef double wake_part(const struct wake *wake, const struct school *school, double t, double q, int i);
+
+static double part_of(const struct strengths *of, wake_part *part, bool decays, const struct wake *wake,
+                      const struct school *school, double t, int i) {
+    if (!decays) return 1;
+    switch (of->kind) {
+        case CHANGE: return part(wake, school, t, of->q, i) - part(wake, school, t, of->less, i);
+        case LOSS: return 1 - part(wake, school, t, of->q, i);
+        case STRENGTHS: break;
+    }
+    return part(wake, school, t, of->q, i);
 }
 
-/* The markers around a stretch at one time, at index i % STRETCH_MARKERS: a pass from the oldest stretch to the newest
- * evaluates each marker once. The parts of labels and markers that remain are those of the strengths of[0] and, for a
- * change, of[1]; without decay they are 1. */
+/* The markers around a stretch, at index i % STRETCH_MARKERS, at n_times times after the event: a pass from the oldest
+ * stretch to the newest evaluates each marker once. */
+enum { MOST_TIMES = 2 };
 struct window {
     int next; /* the first marker that is not in the window yet */
-    double label[STRETCH_MARKERS], place[STRETCH_MARKERS][2];
-    double part_of_label[2][STRETCH_MARKERS], part_of_marker[2][STRETCH_MARKERS];
+    double label[MOST_TIMES][STRETCH_MARKERS], place[MOST_TIMES][STRETCH_MARKERS][2]; /* labels with what remains */
+    double part_of_marker[STRETCH_MARKERS];
 };
 
 static void window_move(struct window *window, const struct wake *wake, const struct school *school, int end, double t,
-                        double tau, const struct strengths of[2]) {
+                        int n_times, const double *tau, const struct strengths *of) {
     for (; window->next < end; window->next++) {
         const int i = window->next, k = i % STRETCH_MARKERS;
-        window->label[k] = wake_label(wake, i, school->interval, tau);
-        wake_marker(wake, i, school->interval, tau, window->place[k]);
-        for (int side = 0; side < 2 && of[side].exist; side++) {
-            const double q = of[side].q;
-            window->part_of_label[side][k] = of[side].decay ? wake_part_of_label(wake, school, t, q, i) : 1;
-            window->part_of_marker[side][k] = of[side].decay ? wake_part_of_marker(wake, school, t, q, i) : 1;
+        const double part = part_of(of, wake_part_of_label, school->finite, wake, school, t, i);
+        window->part_of_marker[k] = part_of(of, wake_part_of_marker, !school->finite, wake, school, t, i);
+        for (int time = 0; time < n_times; time++) {
+            window->label[time][k] = part * wake_label(wake, i, school->interval, tau[time]);
+            wake_marker(wake, i, school->interval, tau[time], window->place[time][k]);
         }
     }
 }
 
-/* The circulations that stretch j gives to its markers, with what remains on one side of the window. */
-static void stretch_circulations(const struct window *window, const struct wake *wake, const struct school *school,
-                                 int j, const struct stretch_form *form, double t, struct strengths of, int side,
-                                 double sum[STRETCH_MARKERS]) {
-    const bool is_young = j >= wake->n_old;
-    const double part_of_stretch = is_young && of.decay ? wake_part_of_stretch(wake, school, t, of.q, j) : 1;
-    double label[STRETCH_MARKERS];
-    for (int b = 0; b < form->n; b++) {
-        const int k = (form->first + b) % STRETCH_MARKERS;
-        label[b] = window->label[k] * window->part_of_label[side][k];
-    }
-    for (int a = 0; a < form->n; a++) {
-        sum[a] = 0;
-        for (int b = 0; b < form->n; b++) sum[a] += form->part[a][b] * label[b];
-        const int k = (form->first + a) % STRETCH_MARKERS;
-        sum[a] *= is_young ? part_of_stretch : window->part_of_marker[side][k];
-    }
-}
-
-/* Add factor times a wake at the time t + tau, with some strengths less others, without the sources to leave out, NULL:
- * none. */
+/* Add factor times a wake with some strengths, without the sources to leave out (NULL: none), at each of n_times times
+ * tau after the event at time t. */
 static void impulse_add_wake(struct impulse_moments *sum, const struct wake *wake, const bool *left_out,
-                             const struct school *school, double t, double tau, struct strengths of,
-                             struct strengths less_of, double factor) {
-    const bool is_change = less_of.exist;
+                             const struct school *school, double t, int n_times, const double *tau, struct strengths of,
+                             double factor) {
     struct stretch_form form;
     struct window window = {.next = 0};
     for (int j = 0; j < wake_n_sources(wake); j++) {
@@ -86,39 +76,50 @@ static void impulse_add_wake(struct impulse_moments *sum, const struct wake *wak
 
         // what does not decay does not change: nothing from the oldest marker of this stretch on
         const int oldest = wake->has_markers && j > 0 ? j - 1 : j;
-        if (is_change && !(wake_strength_within(school, t - wake->birth[oldest], 1) < 1)) return;
+        if (of.kind != STRENGTHS && !(wake_strength_within(school, t - wake->birth[oldest], 1) < 1)) return;
 
         if (!wake->has_markers) {
-            const double part = of.decay ? wake_part_of_label(wake, school, t, of.q, j) : 1;
-            const double less = less_of.decay ? wake_part_of_label(wake, school, t, less_of.q, j) : 0;
-            double at[2];
-            wake_marker(wake, j, school->interval, tau, at);
-            impulse_add(sum, factor * (part - less) * wake->circulation[j], at[0], at[1]);
+            const double part = part_of(&of, wake_part_of_label, true, wake, school, t, j);
+            for (int time = 0; time < n_times; time++) {
+                double at[2];
+                wake_marker(wake, j, school->interval, tau[time], at);
+                impulse_add(sum, factor * part * wake->circulation[j], at[0], at[1]);
+            }
             continue;
         }
 
-        double strength[STRETCH_MARKERS], less[STRETCH_MARKERS] = {0};
+        // the circulations that stretch j gives to its markers
         stretch_set_form(&form, wake, school, j);
         if (window.next < form.first) window.next = form.first;
-        window_move(&window, wake, school, form.first + form.n, t, tau, (const struct strengths[]){of, less_of});
-        stretch_circulations(&window, wake, school, j, &form, t, of, 0, strength);
-        if (is_change) stretch_circulations(&window, wake, school, j, &form, t, less_of, 1, less);
-        for (int a = 0; a < form.n; a++) {
-            const double *const at = window.place[(form.first + a) % STRETCH_MARKERS];
-            impulse_add(sum, factor * (strength[a] - less[a]), at[0], at[1]);
+        window_move(&window, wake, school, form.first + form.n, t, n_times, tau, &of);
+        const bool is_young = j >= wake->n_old;
+        const double part_of_stretch =
+            is_young ? part_of(&of, wake_part_of_stretch, !school->finite, wake, school, t, j) : 1;
+        for (int time = 0; time < n_times; time++) {
+            double label[STRETCH_MARKERS];
+            for (int b = 0; b < form.n; b++) label[b] = window.label[time][(form.first + b) % STRETCH_MARKERS];
+            for (int a = 0; a < form.n; a++) {
+                const int k = (form.first + a) % STRETCH_MARKERS;
+                double strength = 0;
+                for (int b = 0; b < form.n; b++) strength += form.part[a][b] * label[b];
+                strength *= is_young ? part_of_stretch : window.part_of_marker[k];
+                impulse_add(sum, factor * strength, window.place[time][k][0], window.place[time][k][1]);
+            }
         }
     }
 }
 
 struct impulse_moments impulse_of_wake(const struct wake *wake, const struct school *school, double t, double tau) {
     struct impulse_moments sum = {0};
-    impulse_add_wake(&sum, wake, NULL, school, t, tau, strengths_at(tau / school->interval), nothing, 1);
+    const struct strengths now = {STRENGTHS, .q = tau / school->interval};
+    impulse_add_wake(&sum, wake, NULL, school, t, 1, &tau, now, 1);
     return sum;
 }
 
 double impulse_lost_circulation(const struct wake *wake, const struct school *school, double t, double tau) {
     struct impulse_moments lost = {0};
-    impulse_add_wake(&lost, wake, NULL, school, t, tau, undecayed, strengths_at(tau / school->interval), 1);
+    const struct strengths loss = {LOSS, .q = tau / school->interval};
+    impulse_add_wake(&lost, wake, NULL, school, t, 1, &tau, loss, 1);
     return wake->removed + lost.circulation;
 }
 
@@ -160,9 +161,8 @@ void impulse_fade(const struct school *school, struct state *state, int f) {
     struct impulse_moments lost = {0};
 
     // lost moments: mean of the positions at the beginning and at the end of the interval
-    const struct strengths first = strengths_at(0), last = strengths_at(1);
-    impulse_add_wake(&lost, wake, NULL, school, state->t, 0, first, last, 0.5);
-    impulse_add_wake(&lost, wake, NULL, school, state->t, school->interval, first, last, 0.5);
+    const struct strengths change = {CHANGE, .q = 0, .less = 1};
+    impulse_add_wake(&lost, wake, NULL, school, state->t, 2, (const double[]){0, school->interval}, change, 0.5);
 
     // the tail: newest marker at the beginning of the interval, node of y at the end
     const double end[2] = {state->y[fish->at.x + fish->n_nodes - 1], state->y[fish->at.y + fish->n_nodes - 1]};
@@ -245,12 +245,13 @@ struct impulse_moments impulse_thin_wake(const struct school *school, struct sta
     stretch_restore(wake, fish, school, state->y);
 
     // at the event, velocities and rates do not matter
-    const struct strengths now = strengths_at(0);
+    const struct strengths now = {STRENGTHS, .q = 0};
+    const double tau = 0;
     struct impulse_moments lost = {0};
     find_partners(&before, wake, thinning->after);
     find_same_sources(&before, wake, thinning->after, thinning->is_same[0], thinning->is_same[1]);
-    impulse_add_wake(&lost, &before, thinning->is_same[0], school, t, 0, now, nothing, 1);
-    impulse_add_wake(&lost, wake, thinning->is_same[1], school, t, 0, now, nothing, -1);
+    impulse_add_wake(&lost, &before, thinning->is_same[0], school, t, 1, &tau, now, 1);
+    impulse_add_wake(&lost, wake, thinning->is_same[1], school, t, 1, &tau, now, -1);
     lost.product = 0;
     return lost;
 }

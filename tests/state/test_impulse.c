@@ -54,6 +54,7 @@ static double wither(const char *text) {
     double before[3], now[3];
     for (int i = 0; i < wake->n_vortex; i++) {
         wake->u[i] = wake->v[i] = wake->u_before[i] = wake->v_before[i] = 0;
+        wake->rate[i] = wake->rate_before[i] = 0;
         wake->birth[i] = setup.state->t - (wake->n_vortex - 1 - i) * interval;
     }
     all_of(&setup, before);
@@ -90,6 +91,9 @@ TEST(what_fades_or_is_removed_is_booked_where_it_is) {
         snprintf(text, sizeof text, SMALL "wake: {lifetime: 0.3, %s}\nfish: [{force: reactive}]\n", wakes[w]);
         ABOVE(fabs(wither(text)), 1e-3);
     }
+
+    // with finite span labels decay in place of circulations
+    ABOVE(fabs(wither(SMALL "wake: {lifetime: 0.3, decay: 0.2}\nfish: [{sheet_points: 26}]\n")), 1e-3);
 }
 
 // dropped circulation returns to the body at the tail, of a sheet half-way along its path: the loss contains only the
