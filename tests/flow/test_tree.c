@@ -140,7 +140,18 @@ TEST(errors_are_below_the_tolerance_and_not_far_below) {
             const double depth = depths[k < 6 ? k / 2 : 1], smoothing = smoothings[k % 2];
             const struct kernel_pair pair = kernel->other(depth, smoothing * smoothing);
             struct sources rings = fill(clouds[c].place, clouds[c].n, depth);
-            const struct targets by_sum = targets_of(&rings, 1, &direct);
+            // the sum of all rings at every seventh, and the sum without cancellation
+            struct sources some = {.arena = test_arena()};
+            static double size[MOST];
+            sources_append(&some, (rings.n + 6) / 7);
+            for (int i = 0; i < some.n; i++) {
+                some.x[i] = rings.x[7 * i];
+                some.y[i] = rings.y[7 * i];
+                some.half[i] = rings.half[7 * i];
+                some.leg[i] = rings.leg[7 * i];
+                size[i] = without_cancellation(&pair, &rings, 7 * i);
+            }
+            const struct targets by_sum = targets_of(&some, 1, &direct);
             kernel_induce(&pair, &rings, (struct range){0, rings.n}, &by_sum);
 
             for (int t = k < 6 ? 0 : 1; t < (k < 6 ? 3 : 2); t++) {
@@ -148,11 +159,12 @@ TEST(errors_are_below_the_tolerance_and_not_far_below) {
                 induce(&rings, &pair, tolerances[t], 1, &at);
                 induce(&rings, &pair, tolerances[t], 1, &all);
                 double error = 0, gradient = 0;
-                for (int i = 0; i < rings.n; i += 7) {
-                    const double unit = tolerances[t] * fmax(1, without_cancellation(&pair, &rings, i));
+                for (int i = 0; i < some.n; i++) {
+                    const double unit = tolerances[t] * fmax(1, size[i]);
                     for (int s = 0; s < SUMS; s++) {
-                        if (s < 3) keep_worse(&error, fabs(got.value[s][i] - direct.value[s][i]) / unit);
-                        keep_worse(s < 3 ? &error : &gradient, fabs(with.value[s][i] - direct.value[s][i]) / unit);
+                        const double sum = direct.value[s][i];
+                        if (s < 3) keep_worse(&error, fabs(got.value[s][7 * i] - sum) / unit);
+                        keep_worse(s < 3 ? &error : &gradient, fabs(with.value[s][7 * i] - sum) / unit);
                     }
                 }
                 NEAR(error, 0, 1, 0);
