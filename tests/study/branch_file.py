@@ -12,7 +12,7 @@ fold = list(label).index("fold")
 way = np.diff(data["arclength"][:])
 angle = [float(netCDF4.Dataset(f"plates-branch/{name}")["steady_multiplier"][0, 1]) for name in data["file"][:]]
 checks = {
-    "both ends are at FROM": abs(key[0] - 0.085) < 1e-12 and abs(key[-1] - 0.085) < 1e-12,
+    "both ends are at FROM": abs(key[0] - 0.081) < 1e-12 and abs(key[-1] - 0.081) < 1e-12,
     "the fold has the least value": key[fold] <= key.min() + 0.001 * 0.035,
     "the fold is where it was found with twice the events": abs(key[fold] - 0.0785) < 0.002,
     "before the fold the states are stable": (size[:fold] < 1).all(),

@@ -13,15 +13,15 @@ cp "$root/tests/data/falling_back.yaml" plates.yaml
 
 # ---- the branch
 
-run steady plates.yaml --continue "$key=0.085:0.05"
+run steady plates.yaml --continue "$key=0.081:0.05"
 check the_branch_ends_where_it_began_beyond_a_fold test "$code" = 0
 check the_table_names_the_fold test "$(grep -c ', fold$' out)" = 1
-check every_state_is_told_when_it_is_found grep -qF "$key = 0.085: largest multiplier 0.9" err
+check every_state_is_told_when_it_is_found grep -qF "$key = 0.081: largest multiplier 0.9" err
 check the_branch_has_its_fold_and_its_stability python "$root/tests/study/branch_file.py"
 
 # the state on the unstable side is the one that a search from there finds
 last=$(sed -n 's/.*\(state-[0-9]*\.nc\).*/\1/p' <<<"$(ncdump -v file plates-branch/study.nc)" | tail -n 1)
-run steady plates.yaml --from "plates-branch/$last" --set "$key=0.085" -o again.nc --force
+run steady plates.yaml --from "plates-branch/$last" --set "$key=0.081" -o again.nc --force
 check a_search_finds_the_unstable_state_too test "$code" = 0
 check and_finds_it_at_the_same_place python "$root/tests/study/same_place.py" "plates-branch/$last" again.nc
 
