@@ -109,7 +109,8 @@ check choices_are_listed_apart grep -qE '^choices, not in the sum: wake.smoothin
 check the_noise_is_stated grep -qE '^noise of a value, of integrator and search: ' out
 check only_the_case_has_multipliers test "$(ncdump -v steady_error swimmer-study/study.nc | sed -n '/^data/,$p' | tr -d ' \n;}' |
     sed 's/.*=//' | tr , '\n' | grep -c '^[0-9]')" = 1
-run error swimmer.yaml --of steady_multiplier --no-confirm -j 2 -o multiplier --set time.shedding_interval=0.05
+run error swimmer.yaml -j 2 -o multiplier --set time.shedding_interval=0.05 \
+    --set 'error={of: steady_multiplier, confirm: false, keys: [nodes, rtol]}'
 check a_multiplier_has_its_error_and_a_verdict grep -qE '^steady_multiplier: 0[.][0-9]+ [+]- 0[.]0[0-9]+ [(][0-9.]+ %[)]: stable' out
 run error swimmer.yaml --of steady_speed --models -j 2 -o models --set 'fish[*].sheet_points=33' --set time.shedding_interval=0.05
 check other_models_have_a_second_line grep -qE '^other models: from [0-9.]+ m s-1 \([a-z_.]+ [a-z0-9.+]+\) to [0-9.]+ m s-1 \(' out
