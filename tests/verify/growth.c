@@ -2,10 +2,13 @@
  * with the largest multiplier (doc/steady.md, Multipliers), which comes from responses of single beats. */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "steady/steady_modes.h"
 #include "steady/steady_search.h"
+#include "study/branch.h"
+#include "study/study_folder.h"
 #include "verify.h"
 
 enum { MOST_UNKNOWNS = 16, MOST_BEATS = 24 };
@@ -183,8 +186,46 @@ static void other_parameters(void) {
     }
 }
 
+/* The modulus below which the flag of cases/flag.yaml flutters, at three intervals. The bar of one threshold, 0.02 Pa,
+ * is that of the secant, and says nothing of the interval. */
+static void other_intervals(void) {
+    static const char *const interval[] = {"0.05", "0.025", "0.0125"};
+    double value[3];
+    for (int i = 0; i < 3; i++) {
+        ARENA(arena, NULL, "a threshold");
+        struct case_values values;
+        struct branch *branch;
+        char folder[] = "/tmp/verify_growth.XXXXXX";
+        const char *const assignments[] = {verify_text("time.shedding_interval=%s", interval[i]),
+                                           "time.output_interval=0.2"};
+        verify_ok(case_read(&values, "cases/flag.yaml", 2, assignments));
+        arena_move(values.arena, arena);
+        if (!mkdtemp(folder)) verify_ok(status_fail(STATUS_FILE, "%s: cannot be created", folder));
+        const enum status status = branch_follow(arena, &values,
+                                                 &(struct branch_options){.option = "--threshold",
+                                                                          .key = "fish[*].body.modulus",
+                                                                          .from = 50000,
+                                                                          .to = 120000,
+                                                                          .to_threshold = true,
+                                                                          .origin = "flag",
+                                                                          .folder = folder,
+                                                                          .command = "verify growth"},
+                                                 &branch);
+        study_folder_remove(folder);
+        verify_ok(status);
+        value[i] = branch->threshold[0].value;
+        verify_show(verify_text("flag: modulus of flutter, Pa, interval %s s", interval[i]), "of shoal steady",
+                    value[i]);
+    }
+    // between the first order of the mean over an interval and the second of the rest
+    verify_order("flag: order of the threshold over the interval", "three intervals",
+                 verify_order_of_values(value[0], value[1], value[2]), 1, 2);
+    verify_relative("flag: modulus of flutter, Pa, interval 0.025 s", "interval 0.0125 s", value[2], value[1], 0.005);
+}
+
 void verify_growth(void) {
     if (verify_is_fast()) return;
+    other_intervals();
     compare(&(struct growing){"default fish",
                               "format: 1\ntime: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
                               "fish: [{start: {speed: 0.8}}]\n",
