@@ -140,6 +140,21 @@ class Examples(unittest.TestCase):
         self.assertEqual(next(chart.report(rows(0, 0.001))), "4 plates: stable down to 0.15 m (1 s of CPU time a state)")
         self.assertIsNone(chart.bound_of(rows(0, 0.5)))
 
+    def test_the_chart_of_the_manual_has_the_states_that_a_search_finds_and_its_page_their_numbers(self):
+        chart = example("school_stability")
+        rows = chart.read_table(os.path.join(os.path.dirname(chart.CASE), "school_stability.csv"))
+        with open(os.path.join(os.path.dirname(chart.CASE), "..", "..", "doc", "steady.md"), encoding="utf-8") as page:
+            text = page.read()
+        for line in chart.report(rows):
+            self.assertIn(line + "\n", text)
+        table = {(row["plates"], row["heave"]): row for row in rows}
+        # one row of two plates, and one of four, which starts from that of three
+        for plates, heave in ((2, 0.2), (4, 0.15)):
+            before = table.get((plates - 1, heave), {"plates": 1, "speed": table[2, heave]["speed"], "places": [0.0]})
+            row, found = table[plates, heave], chart.state_of(heave, before)
+            self.assertLessEqual(abs(found["multiplier"] - row["multiplier"]), found["error"] + row["error"])
+            np.testing.assert_allclose(found["places"], row["places"], atol=0.05)
+
     def test_a_chart_has_the_states_of_two_plates_and_keeps_them(self):
         chart = example("school_stability")
         rows = chart.fill([], [2], [0.15], "chart.csv")
