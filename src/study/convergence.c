@@ -296,28 +296,20 @@ double convergence_study_value(const struct error_study *study, const struct mem
     return study->relation == ERROR_RATIO ? value / other : value - other;
 }
 
-double convergence_noise(const struct case_values *study, const struct case_values *values,
-                         const struct member_file *members, int m, int known, double beat, const char *quantity,
-                         int f) {
-    // the integrator; a fixed step has no tolerance
-    double rtol = values->solver.rtol;
-    for (int a = 0; a < study->n_axes; a++) {
-        const struct sweep_axis *const axis = &study->sweep[a];
-        for (int k = 0; k < axis->n_keys; k++) {
-            if (strcmp(axis->key[k].row, "solver.rtol") != 0) continue;
-            text_number(axis->value[sweep_member_value(study, m, a) * axis->n_keys + k], &rtol);
-        }
-    }
-    if (values->solver.step > 0) rtol = rounding;
-    if (!sweep_is_steady(study)) return rtol;
+static bool is_multiplier(const char *quantity) {
+    return quantity && strcmp(quantity, "steady_multiplier") == 0;
+}
 
+/* The relative error of member m by the search for its steady state. */
+static double search_noise(const struct case_values *values, const struct member_file *members, int m, int known,
+                           double beat, const char *quantity, int f) {
     // the multiplier: noise of the wake and size of the disturbances
-    if (quantity && strcmp(quantity, "steady_multiplier") == 0) {
+    if (is_multiplier(quantity)) {
         return member_file_number(&members[m], "steady_multiplier_error", 0) /
                member_file_number(&members[m], "steady_multiplier", 0);
     }
 
-    // the search: the distance from the fixed point, or an estimate by the residual
+    // the distance from the fixed point, or an estimate by the residual
     const double residual = member_file_number(&members[m], "steady_residual", 0);
     const double ratio = member_file_number(&members[known], "steady_error", 0) /
                          member_file_number(&members[known], "steady_residual", 0);
@@ -328,7 +320,27 @@ double convergence_noise(const struct case_values *study, const struct case_valu
     const double way = member_file_number(&members[m], "steady_speed", f) * beat / values->school.fish[f].length;
     const double strouhal = member_file_number(&members[m], "steady_strouhal", f);
     const bool is_tail = quantity && strcmp(quantity, "steady_strouhal") == 0 && strouhal > 0;
-    return rtol + search_error / (way > 0 ? fmin(1, is_tail ? strouhal * way : way) : 1);
+    return search_error / (way > 0 ? fmin(1, is_tail ? strouhal * way : way) : 1);
+}
+
+double convergence_noise(const struct case_values *study, const struct case_values *values,
+                         const struct member_file *members, int m, int known, double beat, const char *quantity,
+                         int f) {
+    const bool is_steady = sweep_is_steady(study);
+    const double of_search = is_steady ? search_noise(values, members, m, known, beat, quantity, f) : 0;
+    if (is_steady && is_multiplier(quantity)) return of_search;
+
+    // the integrator; a fixed step has no tolerance
+    double rtol = values->solver.rtol;
+    for (int a = 0; a < study->n_axes; a++) {
+        const struct sweep_axis *const axis = &study->sweep[a];
+        for (int k = 0; k < axis->n_keys; k++) {
+            if (strcmp(axis->key[k].row, "solver.rtol") != 0) continue;
+            text_number(axis->value[sweep_member_value(study, m, a) * axis->n_keys + k], &rtol);
+        }
+    }
+    if (values->solver.step > 0) rtol = rounding;
+    return rtol + of_search;
 }
 
 /* The noise of a quantity of a member of an error study; a ratio or a difference has that of both its parts.
@@ -344,11 +356,14 @@ static double study_noise(const struct error_study *study, const struct member_f
                 other * fabs(convergence_study_value(study->twin, members, twin, q, fish))) /
                fabs(convergence_study_value(study, members, m, q, f));
     }
-    const double all =
-        convergence_noise(study->study, study->values, members, m, study->base, study->is_static ? 0 : study->beat,
-                          member_file_quantity(study->quantity[q])->name, f);
-    const bool is_of_search = is_neighbour && study->is_steady && !(study->values->solver.step > 0);
-    return is_of_search ? fmax(all - study->values->solver.rtol, rounding) : all;
+    const char *const quantity = member_file_quantity(study->quantity[q])->name;
+    // an equilibrium is found by Newton's method, without the integrator
+    const bool is_of_search = study->is_static || (study->is_steady && is_neighbour);
+    if (!is_of_search) {
+        return convergence_noise(study->study, study->values, members, m, study->base, study->beat, quantity, f);
+    }
+    return fmax(rounding,
+                search_noise(study->values, members, m, study->base, study->is_static ? 0 : study->beat, quantity, f));
 }
 
 // ---- the refined axis

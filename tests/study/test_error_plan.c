@@ -576,6 +576,27 @@ TEST(a_flag_belongs_to_one_quantity_and_names_its_levels) {
     contains(text, "<- spend here: nodes 69, CPU x 7.4, to find an order of cost_of_transport\n");
 }
 
+/* The values differ by 2e-5, which is below the tolerance of the integrator. */
+TEST(an_equilibrium_has_no_error_of_the_integrator) {
+    struct error_study study =
+        open_study("format: 1\ntime: {end: 4}\nsolver: {rtol: 3e-5}\n" FOIL, "{of: steady_lift, keys: [nodes]}");
+    assert_true(study.is_static);
+    struct member_file *const members = make_members(&study);
+    const struct error_study_key *const key = key_of(&study, "fish.nodes");
+    for (int i = 0; i < key->n_levels; i++) {
+        set_value(&members[key->member[i]], "steady_lift", 1 + 1e-3 / pow(key->value[i] - 1, 2));
+        set_value(&members[key->member[i]], "steady_residual", 1e-12);
+        set_value(&members[key->member[i]], "steady_error", 1e-12);
+    }
+    convergence_study_judge(&study, members);
+    assert_int_equal(key->part[0].verdict, CONVERGENCE_ACCEPTED);
+    NEAR(key->part[0].order, 2, 1e-6, 0);
+    // where the search itself is worse than the differences, they are noise
+    for (int i = 0; i < key->n_levels; i++) set_value(&members[key->member[i]], "steady_error", 1e-3);
+    convergence_study_judge(&study, members);
+    assert_int_equal(key->part[0].verdict, CONVERGENCE_NONE);
+}
+
 /* A finer level cannot take less time: times of short runs are noisy. */
 TEST(a_finer_level_is_never_cheaper) {
     struct error_study study = open_study(UNIFORM, "{of: steady_speed, keys: [shedding_interval]}");
