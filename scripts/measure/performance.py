@@ -6,6 +6,7 @@ How to call it: scripts/measure/tables.py.
 
 import math
 import os
+import pathlib
 import re
 import resource
 import subprocess
@@ -81,6 +82,39 @@ def growth(bench):
         last = now
 
 
+def resume_full(bench, program, name, n, interval, lifetime, more):
+    """Fill the wakes of n fish; a function that goes on for `more` seconds on so many threads, and returns the seconds of CPU and
+    of wall time."""
+    keys = f"start: {{speed: 0.81}}, control: {{law: {'course' if n == 1 else 'heading'}}}"
+    with open(os.path.join(bench.folder, name + ".yaml"), "w", encoding="utf-8") as file:
+        file.write(lattice(n, (2, 1), lifetime, interval, 0.5, keys) +
+                   f"wake: {{lifetime: {lifetime}, decay: {lifetime / 4}}}\nsolver: {{threads: 1}}\n")
+    paths = [os.path.join(bench.folder, name + end) for end in (".nc", ".ckpt")]
+    for path in paths:
+        if os.path.exists(path):
+            os.remove(path)
+    subprocess.run([program, "run", name + ".yaml", "-q", "--checkpoint-at", f"{lifetime:g}"], cwd=bench.folder, check=True,
+                   capture_output=True)
+    kept = [pathlib.Path(path).read_bytes() for path in paths]
+
+    def once(threads=1):
+        for path, data in zip(paths, kept):
+            pathlib.Path(path).write_bytes(data)
+        before, begin = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime, time.perf_counter()
+        subprocess.run([program, "resume", name + ".ckpt", "-q", "--end", f"{lifetime + more:g}", "--threads", str(threads)],
+                       cwd=bench.folder, check=True, capture_output=True)
+        return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before, time.perf_counter() - begin
+    return once
+
+
+@table("fish", "CPU time", "wall time, two threads")
+def full_wakes(bench):
+    """time per simulated second of 1 to 64 default fish with the default interval and full wakes (minutes)"""
+    for n, more in ((1, 8), (4, 4), (16, 2), (64, 1)):
+        once = resume_full(bench, bench.program, "full", n, 0.01, 8, more)
+        yield n, f"{once()[0] / more:.2g}", f"{once(2)[1] / more:.2g}"
+
+
 EARLIER = "7a50a9ba"
 
 
@@ -92,37 +126,14 @@ def earlier(bench):
     archive = subprocess.run(["git", "-C", HERE, "archive", EARLIER], check=True, capture_output=True).stdout
     subprocess.run(["tar", "-x", "-C", tree], input=archive, check=True)
     subprocess.run(["make", "-C", tree, "-j2", "build/shoal"], check=True, capture_output=True)
-    programs = bench.program, os.path.join(tree, "build", "shoal")
-
-    def full(n, interval, lifetime, program, name, more):
-        """Fill the wakes; the seconds of the run that follows."""
-        keys = f"start: {{speed: 0.81}}, control: {{law: {'course' if n == 1 else 'heading'}}}"
-        with open(os.path.join(bench.folder, name + ".yaml"), "w", encoding="utf-8") as file:
-            file.write(lattice(n, (2, 1), lifetime, interval, 0.5, keys) +
-                       f"wake: {{lifetime: {lifetime}, decay: {lifetime / 4}}}\nsolver: {{threads: 1}}\n")
-        paths = [name + end for end in (".nc", ".ckpt")]
-        for path in paths:
-            if os.path.exists(os.path.join(bench.folder, path)):
-                os.remove(os.path.join(bench.folder, path))
-        subprocess.run([program, "run", name + ".yaml", "-q", "--checkpoint-at", f"{lifetime:g}"], cwd=bench.folder, check=True,
-                       capture_output=True)
-        kept = [open(os.path.join(bench.folder, path), "rb").read() for path in paths]
-
-        def once():
-            for path, data in zip(paths, kept):
-                with open(os.path.join(bench.folder, path), "wb") as file:
-                    file.write(data)
-            before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-            subprocess.run([program, "resume", name + ".ckpt", "-q", "--end", f"{lifetime + more:g}"], cwd=bench.folder,
-                           check=True, capture_output=True)
-            return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
-        return once
+    now, before = bench.program, os.path.join(tree, "build", "shoal")
 
     for n, interval, lifetime, over, more in ((1, 0.01, 3, 3, 16), (4, 0.01, 3, 3, 5), (16, 0.01, 3, 3, 1.5), (64, 0.01, 3, 3, 0.5),
                                               (1, 0.02, 3, 3, 16), (4, 0.02, 3, 3, 5), (16, 0.02, 3, 3, 1.5), (64, 0.02, 3, 3, 0.5),
                                               (1, 0.01, 10, 10, 8), (4, 0.01, 10, 10, 2), (1, 0.01, 8, 3, 8), (4, 0.01, 8, 3, 4)):
-        runs = [full(n, interval, lifetime, programs[0], "now", more), full(n, interval, over, programs[1], "before", more)]
-        times = [min(pair) for pair in zip(*([run() for run in runs] for _ in range(3 if n < 16 else 2 if n < 64 else 1)))]
+        runs = [resume_full(bench, now, "now", n, interval, lifetime, more),
+                resume_full(bench, before, "before", n, interval, over, more)]
+        times = [min(pair) for pair in zip(*([run()[0] for run in runs] for _ in range(3 if n < 16 else 2 if n < 64 else 1)))]
         yield n, interval, lifetime, over, f"{times[0] / times[1]:.2f}"
 
 
