@@ -95,23 +95,25 @@ program = $(B)/shoal
 
 # the rooms of src/, lowest first: scripts/check-layers.sh
 rooms           = base fish body wake control state flow force contact school case solver result view run steady study library app
-folders         = $(addprefix $(B)/,doc verify bench fuzz $(rooms) $(rooms:%=tests/%))
+folders         = $(addprefix $(B)/,doc verify bench fuzz $(rooms) $(patsubst %,tests/%,$(rooms) extra))
 app_objects     = $(patsubst src/%.c,$(B)/%.o,$(wildcard src/app/*.c))
 library_objects = $(patsubst src/%.c,$(B)/%.o,$(wildcard $(patsubst %,src/%/*.c,$(filter-out app,$(rooms)))))
 c_files         = $(wildcard src/*/*.[ch] include/*.h tests/*.[ch] tests/*/*.[ch])
 
 # tests/extra needs further packages or minutes, and tests/slurm a cluster: they belong to make test-all, or are named
-# with TEST
+# with TEST; with the sanitizers make test runs all tests in C
 test_names   = $(or $(TEST),*)
 c_tests      = $(patsubst tests/%.c,$(B)/tests/%,$(wildcard $(test_names:%=tests/*/test_%.c)))
 shell_tests  = $(filter-out $(if $(TEST),,tests/extra/%) tests/slurm/%,$(wildcard $(test_names:%=tests/*/test_%.sh)))
-extra_tests  = $(wildcard $(test_names:%=tests/extra/test_%.sh))
+extra_c_tests = $(filter $(B)/tests/extra/%,$(c_tests))
+extra_tests  = $(extra_c_tests) $(wildcard $(test_names:%=tests/extra/test_%.sh))
+usual_c_tests = $(filter-out $(if $(TEST)$(sanitize),,$(extra_c_tests)),$(c_tests))
 # those that take longest begin, so that all processors have work to the end; then the other scripts
 longest      = python error branch steady_formation study command resume results steady_command threshold_command cases
 first_tests  = $(foreach test,$(longest),$(filter %/test_$(test) %/test_$(test).sh,$(c_tests) $(shell_tests)))
 # C tests of more than three seconds, not in make check
 long_c_tests  = contact diagnostics diagnostics_momentum estimate flow_at_markers flow_sources sensor_pressure simulate steady steady_formation take_up tree warnings
-quick_c_tests = $(filter-out $(foreach test,$(long_c_tests),%/test_$(test)),$(c_tests))
+quick_c_tests = $(filter-out $(foreach test,$(long_c_tests),%/test_$(test)),$(usual_c_tests))
 test_helpers  = $(patsubst tests/%.c,$(B)/tests/%.o,$(wildcard tests/*.c))
 
 verify_program = $(B)/verify/verify
@@ -155,9 +157,9 @@ help:  ## this list
 
 test: deps  ## install what is missing, build, test the program (minutes)
 	@$(parallel) tests
-	@scripts/run-tests.sh $(program) $(first_tests) $(filter-out $(first_tests),$(shell_tests) $(c_tests))
+	@scripts/run-tests.sh $(program) $(first_tests) $(filter-out $(first_tests),$(shell_tests) $(usual_c_tests))
 
-test-extra: deps  ## test documents, studies, the article, figures, site, pages in a browser, files of VTK, manual, packages, faults, classical results
+test-extra: deps  ## test each key, documents, studies, the article, figures, site, pages in a browser, files of VTK, manual, packages, faults, classical results
 	@scripts/install-deps.sh @extra @site
 	@$(parallel) tests
 	@scripts/run-tests.sh $(program) $(extra_tests)
@@ -170,7 +172,7 @@ check: deps style  ## what to run before a commit: style, and the tests in C tha
 	@$(parallel) tests
 	@scripts/run-tests.sh $(program) $(quick_c_tests)
 
-test-c: deps  ## run the tests in C only (a minute)
+test-c: deps  ## run the tests in C only, those of tests/extra too (a minute)
 	@$(parallel) tests
 	@scripts/run-tests.sh $(program) $(c_tests)
 
