@@ -6,17 +6,16 @@
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 
-scripts=$root/scripts
-
 if ! /usr/bin/python3 -c 'import netCDF4, matplotlib' 2>err; then
     skip pictures 'python3-netcdf4 or python3-matplotlib is missing'
     finish
     exit
 fi
+start_python
 
 draws() {  # file
     rm -f picture.png
-    /usr/bin/python3 "$scripts/plot.py" study "$1" picture.png >drawn && test -s picture.png
+    python "$root/scripts/plot.py" study "$1" picture.png >drawn && test -s picture.png
 }
 
 # ---- studies
@@ -57,7 +56,7 @@ defaults: {fish: {force: reactive, nodes: 5, sheet_points: 11}}
 fish: [{motion: {prescribed: head}}]
 sweep: [{key: "fish[*].start.speed", values: [0.5, 1]}]
 end
-panels() { /usr/bin/python3 "$root/tests/extra/panels.py" "$@"; }
+panels() { python "$root/tests/extra/panels.py" "$@"; }
 run study held.yaml -o held
 check a_picture_of_a_held_fish draws held/study.nc
 check it_shows_what_holding_takes panels held/study.nc mean_thrust mean_power efficiency
@@ -74,7 +73,7 @@ check a_foil_held_in_a_stream_has_thrust_and_efficiency panels foil/study.nc mea
 # two of three levels need more steps than permitted
 run study refined.yaml -o lonely --set time.end=0.04 --set time.shedding_interval=0.02 --set solver.method=rk4 \
     --set solver.max_steps=3 --set 'sweep=[{key: solver.step, values: [0.01, 0.005, 0.0025], refine: true}]'
-check no_picture_without_errors eval '! draws lonely/study.nc && has check.out "no errors to draw"'
+check no_picture_without_errors eval '! draws lonely/study.nc && has drawn "no errors to draw"'
 run study refined.yaml -o costs --set time.shedding_interval=0.01 --set 'fish[0].wave.ramp=0' --set 'sweep=[{
     keys: ["fish[*].body.modulus", solver.method, solver.step, solver.rtol],
     values: [[1e5, ida, 0, 1e-8], [1e5, ida, 0, 1e-5], [1e5, rk4, 1e-3, 1e-5], [1e5, euler, 1e-2, 1e-5]]}]'
@@ -85,7 +84,7 @@ check a_method_without_an_accurate_member_is_named has drawn '| 100000 | euler |
 run compare refined.yaml --repeats 1 -o compare.nc
 check a_picture_of_a_comparison draws compare.nc
 run run swimmer.yaml -q -o single.nc
-check no_picture_of_one_run eval '! draws single.nc && has check.out "the file of a run, not of a study"'
+check no_picture_of_one_run eval '! draws single.nc && has drawn "the file of a run, not of a study"'
 
 # ---- errors
 

@@ -113,7 +113,7 @@ if [[ -e $here/cases/demo.yaml ]]; then
     (cd demo && ! "$program" demo -q >../out 2>../err)
     check demo_does_not_replace_its_own_files_unless_told test $? = 0
     # a Python of another place before the system's in PATH, such as that of conda or pyenv
-    library=$(/usr/bin/python3 -c 'import os; print(os.__file__)')
+    library=$(/usr/bin/python3 "$root/tests/faults/place_of_os.py")
     mkdir -p other/bin "$(dirname "other/${library#/usr/}")"
     cp "$library" "other/${library#/usr/}"
     cp /bin/true other/bin/python3

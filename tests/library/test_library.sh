@@ -3,6 +3,7 @@
 # and static, silent, and with no name of its own but shoal_*.
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
+start_python
 
 build=$(dirname "$program")
 
@@ -56,8 +57,8 @@ static_library() {
 }
 
 module() {
-    LD_PRELOAD=$preload ASAN_OPTIONS=detect_leaks=0 PYTHONPATH=$(echo usr/lib/python3*/site-packages) /usr/bin/python3 -c \
-        'import shoal; run = shoal.Run("case.yaml"); run.step(); assert run["x"].shape == (2, 9, 2)'
+    LD_PRELOAD=$preload ASAN_OPTIONS=detect_leaks=0 PYTHONPATH=$(echo usr/lib/python3*/site-packages) /usr/bin/python3 \
+        "$root/tests/library/one_step.py"
 }
 
 check 'installs into a prefix' install_it
@@ -71,7 +72,7 @@ check 'the installed module finds the installed library' module
 check 'a C++ program compiles' compile client++ g++ -std=c++17 -pthread "$root/tests/library/client.cpp"
 check 'two threads with two runs give the bits of single runs' silent ./client++ case.yaml
 for i in 0 1; do
-    check "result $i of a thread is that of the program" "$root/tests/run/same_result.py" alone$i.nc together$i.nc
+    check "result $i of a thread is that of the program" python "$root/tests/run/same_result.py" alone$i.nc together$i.nc
 done
 
 finish

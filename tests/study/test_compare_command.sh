@@ -5,6 +5,7 @@
 #   tests/study/test_compare_command.sh PROGRAM
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
+start_python
 
 article=$root/cases/include/article.yaml
 export TMPDIR=$folder  # where comparisons run
@@ -31,8 +32,7 @@ run compare case.yaml --methods ida2,ida5,euler,rk4,dormand_prince --rtol 1e-3,1
 check all_methods_have_three_errors test "$code" = 0 -a "$(awk '/ complete$/ && $4 != $5 && $5 != $6' out | wc -l)" = 10
 "$program" keys --json >keys.json
 "$program" compare --help >help
-for method in $(/usr/bin/python3 -c 'import json
-print(*next(key["words"] for key in json.load(open("keys.json")) if key["path"] == "solver.method"))'); do
+for method in $(python "$root/tests/study/words_of_key.py" keys.json solver.method); do
     check "help names $method" grep -qE "[ (]$method([ ,;]|$)" help
 done
 check the_error_of_the_reference_is_printed has out 'Reference: ida5, rtol 1e-09; difference of ida5, rtol 1e-08: '
@@ -92,7 +92,7 @@ check what_it_did_is_said grep -qE \
     '^rk4, rtol 1e-3 failed: too slow: at t = [0-9.e-]+ s after [0-9.]+ s, [1-9][0-9]* steps and [1-9][0-9]* evaluations$' out
 check its_cost_to_the_end_is_marked grep -qE '^ +rk4 +1e-3 .* ~[0-9.e+]+ +- +~[0-9.e+]+ +~[0-9.e+]+ +0 +0 .* failed$' out
 check the_mark_is_explained has out '~: extrapolated to the end, t = 2 s, from what was done within --limit.'
-check python_reads_both /usr/bin/python3 "$root/tests/study/late.py" late.nc
+check python_reads_both python "$root/tests/study/late.py" late.nc
 cp out printed
 run info late.nc
 check info_prints_it_too cmp <(sed 1,8d out) printed
