@@ -206,7 +206,7 @@ of least squares; the larger root is compared with the multiplier. The first bea
 state has no disturbance before them. The last rows show an unstable school, five plates of heave 0.12 m: a run that is released
 from the steady state oscillates in the last plate, and with the period of the mode. At the end the multiplier of two plates is
 computed with other intervals and tolerances. The first rows are the modulus below which a flag flutters, as `shoal steady
---threshold` finds it at three intervals: it converges, and its own bar does not contain what the interval changes."""),
+--threshold` finds it at three intervals, between which it falls at an order of 1.4; its own bar does not contain what the interval changes."""),
     "walls": ("Walls", """\
 For bodies beside straight walls (model.md 17) this section shows that a fish beside a wall moves like a fish beside the mirror image, a plate between
 two walls has the circulation of thin-foil theory with all images, and a fish that swims against a wall loses no energy to
