@@ -31,6 +31,7 @@ struct axis {
     const struct yaml_node *node;
     struct sweep_axis *into;
     bool is_zipped; /* written with "keys" */
+    bool is_start;  /* a key sets where or how fast a search starts */
     int n_keys;     /* as written; those that are wrong are NULL */
     const struct key *key[MAX_KEYS];
     struct yaml_errors *errors;
@@ -68,7 +69,6 @@ int sweep_member_before(const struct case_values *study, int member) {
     for (int a = study->n_axes - 1; a >= 0; a--) {
         const struct sweep_axis *const axis = &study->sweep[a];
         const int value = sweep_member_value(study, member, a), before = axis->before ? axis->before[value] : value - 1;
-        if (axis->steady && axis->is_start && !axis->before) return -1;
         if (axis->steady) return before >= 0 ? member - (value - before) * stride : -1;
         stride *= study->sweep[a].n_values;
     }
@@ -201,7 +201,7 @@ static void axis_read_keys(struct axis *axis) {
         }
 
         axis->key[n] = key;
-        axis->into->is_start |= is_start(school, key, path.fish);
+        axis->is_start |= is_start(school, key, path.fish);
         axis->into->key[n] =
             (struct sweep_key){.path = arena_text(axis->values->arena, "%s", written),
                                .row = key->path,
@@ -375,6 +375,12 @@ static void axis_read(struct axis *axis) {
             yaml_errors_add(errors, node->mark, "%s: sweep[%d] is %s already; one axis can be", path, i,
                             is_steady ? "steady" : "refined");
         }
+    }
+
+    // the state of another value would replace the start that is swept
+    if (into->steady && axis->is_start) {
+        NEW(axis->values->arena, into->before, into->n_values);
+        for (int i = 0; i < into->n_values; i++) into->before[i] = -1;
     }
 
     // the value that the results are compared with

@@ -27,7 +27,6 @@ struct sweep_axis {
                              (n_values * n_keys) */
     bool refine;          /* the values are resolutions of the first key: a study of convergence */
     bool steady;          /* members are steady states; each search starts from the state of the previous value */
-    bool is_start;        /* places or speeds from which a search starts: none starts from the previous state */
     int *before;          /* start from the state of this value instead, -1: start of the case; NULL     (n_values) */
     bool *is_against;     /* run the case of error.against; NULL: no value does                            (n_values) */
     bool is_relative;     /* the results of all members are also divided by those of the members with one value: */
