@@ -45,8 +45,9 @@ void observers_after(struct residual *residual, struct state *state, const struc
     // look for faded wakes once in the shortest beat
     double rate = 0;
     for (int f = 0; f < school->n_fish; f++) rate = fmax(rate, fish_rate(school, &school->fish[f]));
-    const long events_per_beat = (long)fmax(1, round(1 / (rate * school->interval)));
-    if (state->event % events_per_beat == 0) warnings_fading(residual, state, state->fading, &state->faded);
+    const double events_per_beat = fmax(1, round(1 / (rate * school->interval)));
+    const bool has_beaten = fmod((double)state->event, events_per_beat) <= 0;
+    if (has_beaten) warnings_fading(residual, state, state->fading, &state->faded);
 }
 
 void observers_jump(const struct observers *observers, struct residual *residual, struct state *state,
