@@ -11,6 +11,9 @@
 
 enum { MAX_VARIABLES = 200 };
 
+/* The body of all fish in these runs, unless a fish has another. */
+#define BODY "defaults: {fish: {body: {thickness: 0.2, depth: 0.25, modulus: 1e6}}}\n"
+
 /* The values of a variable, as one number: a sum with weights that differ, and the sum of the magnitudes. NaN counts as
  * a number of its own. */
 struct entry {

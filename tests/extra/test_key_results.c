@@ -22,8 +22,6 @@ static const double of_keys = 1e-7;
 static const double of_keys = 1e-5;
 #endif
 
-#define BODY "defaults: {fish: {body: {thickness: 0.2, depth: 0.25, modulus: 1e6}}}\n"
-
 /* Two intervals of a school in which most keys act. In place of %: sheet points and forces of fish 0, 1 and 2, and
  * what only some forces allow. */
 static const char school[] =

@@ -28,7 +28,6 @@ static const double tolerance = 1e-5;
 #endif
 static const double of_differences = 1e-2;
 
-#define BODY "defaults: {fish: {body: {thickness: 0.2, depth: 0.25, modulus: 1e6}}}\n"
 #define TIME "format: 1\ntime: {end: 0.3, shedding_interval: 0.0125}\nsolver: {rtol: 1e-8}\n" BODY
 #define STREAM "fluid: {velocity: [0.2, -0.1], shear: 0.3, gust: {amplitude: 0.15, frequency: 2.2}}\n"
 #define FISH "nodes: 5, sheet_points: 17, wave: {frequency: 4, phase: 20}"
