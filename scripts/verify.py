@@ -199,14 +199,16 @@ with the complex potential of the vortices of the run outside the circle of the 
 theory, whose added-mass pressure is elliptic. The friction on both sides by Thwaites' method (model.md 9) is compared with
 Blasius and with the Navier-Stokes solutions of the last section."""),
     "growth": ("Growth of a disturbance", """\
+The first rows are the modulus below which a flag flutters, as `shoal steady --threshold` finds it at three intervals, between
+which it falls at an order of 1.4. Its own bar does not contain what the interval changes.
+
 The multipliers of a steady state come from the responses to changes that last a single beat (doc/steady.md). Here two runs
 start from the steady state plus and minus a multiple of the mode of the largest multiplier, and nothing is corrected on the
 way. Their difference x_k after beat k grows or decays by the recurrence x_k+1 = a x_k + b x_k-1, whose coefficients are those
 of least squares; the larger root is compared with the multiplier. The first beats are left out, because the wake of the steady
 state has no disturbance before them. The last rows show an unstable school, five plates of heave 0.12 m: a run that is released
 from the steady state oscillates in the last plate, and with the period of the mode. At the end the multiplier of two plates is
-computed with other intervals and tolerances. The first rows are the modulus below which a flag flutters, as `shoal steady
---threshold` finds it at three intervals, between which it falls at an order of 1.4; its own bar does not contain what the interval changes."""),
+computed with other intervals and tolerances."""),
     "walls": ("Walls", """\
 For bodies beside straight walls (model.md 17) this section shows that a fish beside a wall moves like a fish beside the mirror image, a plate between
 two walls has the circulation of thin-foil theory with all images, and a fish that swims against a wall loses no energy to

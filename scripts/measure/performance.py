@@ -83,8 +83,8 @@ def growth(bench):
 
 
 def resume_full(bench, program, name, n, interval, lifetime, more):
-    """Fill the wakes of n fish; a function that goes on for `more` seconds on so many threads, and returns the seconds of CPU and
-    of wall time."""
+    """Fill the wakes of n fish. Returns a function that goes on from there for `more` seconds, with a number of threads, and returns
+    the seconds of CPU time and of wall time."""
     keys = f"start: {{speed: 0.81}}, control: {{law: {'course' if n == 1 else 'heading'}}}"
     with open(os.path.join(bench.folder, name + ".yaml"), "w", encoding="utf-8") as file:
         file.write(lattice(n, (2, 1), lifetime, interval, 0.5, keys) +
