@@ -980,3 +980,50 @@ enum status error_plan_create(struct arena *arena, struct error_sweep **plan, co
     *plan = sweep;
     return STATUS_OK;
 }
+
+// ---- members that cost the same
+
+/* Whether a key decides what a member costs, beside the number of fish: the cost hardly depends on numbers of the
+ * bodies such as stiffness, amplitude and place. */
+static bool decides_cost(const struct sweep_key *column) {
+    const struct key *const key = case_table_row(column->row);
+    const bool is_of_body = case_table_is_of_fish(key) && (key->type == REAL || key->type == PAIR);
+    return !is_of_body || strstr(key->path, "frequency");
+}
+
+/* Whether two members cost the same, as far as keys decide it. */
+static bool cost_the_same(const struct error_sweep *sweep, int a, int b) {
+    const struct sweep_axis *const axis = &sweep->study.sweep[0];
+    bool is_same = axis->is_against[a] == axis->is_against[b] && (axis->before[a] < 0) == (axis->before[b] < 0);
+    for (int c = 0; c < axis->n_keys && is_same; c++) {
+        is_same = !decides_cost(&axis->key[c]) ||
+                  strcmp(axis->value[a * axis->n_keys + c], axis->value[b * axis->n_keys + c]) == 0;
+    }
+    return is_same;
+}
+
+int error_plan_choose_estimated(const struct error_sweep *sweep, int *like) {
+    const int n = sweep_n_members(&sweep->study);
+    int n_estimated = 0, *point, *estimated;
+    NEW(sweep->arena, point, n);
+    NEW(sweep->arena, estimated, n);
+    for (int p = sweep->n_points - 1; p >= 0; p--) {
+        const struct error_study *const study = &sweep->point[p];
+        point[study->base] = p;
+        for (int k = 0; k < study->n_keys; k++) {
+            for (int i = 0; i < study->key[k].n_levels && study->key[k].n_levels > 1; i++) {
+                point[study->key[k].member[i]] = p;
+            }
+        }
+    }
+    for (int m = 0; m < n; m++) {
+        like[m] = m;
+        for (int i = n_estimated - 1; i >= 0 && like[m] == m; i--) {
+            const int other = estimated[i];
+            const bool is_near = point[other] == point[m] || !sweep->point[point[m]].is_full;
+            if (is_near && cost_the_same(sweep, m, other)) like[m] = other;
+        }
+        if (like[m] == m) estimated[n_estimated++] = m;
+    }
+    return n_estimated;
+}

@@ -155,4 +155,9 @@ struct error_plan_change {
 int error_plan_member(struct error_study *study, int n, const struct error_plan_change *changes, int before,
                       bool *is_new);
 
+/* Choose for each member the one whose estimated time it takes: itself, or a member that costs the same, of its own
+ * point or, if the point does not vary all keys, of the points before. Keys that are numbers of the bodies, but for a
+ * frequency, hardly change the cost. like: (members). Returns the number of members that take their own. */
+int error_plan_choose_estimated(const struct error_sweep *sweep, int *like);
+
 #endif

@@ -131,13 +131,6 @@ check a_swept_numerical_key_is_named_as_missing_from_the_errors grep -qx \
 check a_swept_key_may_be_one_that_the_levels_set test "$code" = 0 -a -s numerical/study.nc -a -s numerical/error.csv
 
 sed '/^error/d' swimmer.yaml >soft.yaml
-# a plan estimates members that differ in numbers of the bodies once, except those of points that vary all keys, 0, 2 and 4
-times_of_interval() { awk -v point="$1" '$1 == point && $2 == "time.shedding_interval" { print $(NF - 3), $(NF - 1), $NF }' out; }
-run error soft.yaml --of speed --plan --sweep 'fish[*].body.modulus=1e7,2e7,3e7,4e7,5e7'
-check points_of_other_stiffness_cost_the_same test "$(times_of_interval 1)" = "$(times_of_interval 0)" -a -n "$(times_of_interval 1)"
-run error soft.yaml --of speed --plan --sweep 'fish[*].sheet_points=17,33,65,129,257'
-check points_of_other_resolution_do_not awk 'NR == 1 { split($0, first) } END { exit !($3 > 2 * first[3]) }' \
-    <(times_of_interval 0; times_of_interval 3)
 
 # ---- comparisons: with another case, along a sweep, with another fish
 

@@ -338,6 +338,42 @@ TEST(a_key_of_the_sweep_is_not_varied) {
     assert_string_equal(first.key[0].row->path, "solver.rtol");
 }
 
+/* The number of members whose time a plan estimates itself; in `like` the members whose estimates serve. */
+static int choose_estimated(const struct error_study *study, int *like) {
+    const int n = error_plan_choose_estimated(study->sweep, like);
+    int n_own = 0;
+    for (int m = 0; m < sweep_n_members(study->study); m++) {
+        n_own += like[m] == m;
+        assert_int_equal(like[like[m]], like[m]);
+    }
+    assert_int_equal(n_own, n);
+    return n;
+}
+
+TEST(a_plan_estimates_points_that_cost_the_same_once) {
+    int like[128];
+    const struct error_study stiffness = open_study(moduli, "{of: steady_speed, keys: [nodes, shedding_interval]}");
+    BELOW(sweep_n_members(stiffness.study), 128);
+    // a point has 8 members: the case, 4 numbers of nodes with one sheet, 3 more intervals. Points 1 and 3 do not vary
+    // all keys. They need an estimate only for the case of point 1: it starts from a neighbour, unlike that of point 0
+    assert_int_equal(choose_estimated(&stiffness, like), 3 * 8 + 1);
+    assert_int_equal(like[3], 2);
+    const struct error_study_key *const first = key_of(&stiffness.sweep->point[0], "fish.nodes"),
+                                        *const second = key_of(&stiffness.sweep->point[1], "fish.nodes");
+    for (int i = 0; i < 4; i++) assert_int_equal(like[second->member[i]], like[first->member[i]]);
+
+    // points of other resolution or frequency have times of their own
+    const char *const axes[] = {"fish[*].sheet_points\", values: [49, 65, 97, 129, 161]",
+                                "fish[*].wave.frequency\", values: [1, 1.1, 1.25, 1.6, 2]"};
+    for (int a = 0; a < 2; a++) {
+        char text[1024];
+        snprintf(text, sizeof text, UNIFORM "sweep: [{key: \"%s}]\n", axes[a]);
+        const struct error_study other = open_study(text, "{of: steady_speed, keys: [shedding_interval]}");
+        BELOW(sweep_n_members(other.study), 128);
+        assert_int_equal(choose_estimated(&other, like), 5 * 4);
+    }
+}
+
 // ---- values of members
 
 /* The values of members: speed and cost with errors of second order in the nodes, of first order in the sheet and in
