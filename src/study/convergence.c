@@ -559,7 +559,11 @@ static void judge_key(struct error_study *study, const struct member_file *membe
         for (int f = 0; f < study->n_fish; f++) {
             struct convergence_result *const part = &key->part[error_plan_place(study, q, f)];
             const bool is_choice = key->row->kind == SWEEP_MODEL;
-            if (!is_choice && f > 0 && !member_file_quantity(study->quantity[q])->of_fish) continue;
+            if (!error_plan_has_value(study, q, f)) {
+                *part =
+                    (struct convergence_result){.error = NAN, .finest_error = NAN, .order = NAN, .coarse_order = NAN};
+                continue;
+            }
             for (int i = 0; i < key->n_levels; i++)
                 value[i][0] = convergence_study_value(study, members, key->member[i], q, f);
             const double noise = study_noise(study, members, stated, q, f, false);

@@ -905,6 +905,11 @@ int error_plan_twin_fish(const struct error_study *study, int fish) {
     return n_twin == 1 ? 0 : fish < n_twin ? fish : -1;
 }
 
+bool error_plan_has_value(const struct error_study *study, int quantity, int fish) {
+    if (!member_file_quantity(study->quantity[quantity])->of_fish) return fish == 0;
+    return study->relation == ERROR_VALUE || error_plan_twin_fish(study, fish) >= 0;
+}
+
 char *error_plan_twin_name(const struct error_study *study, int fish) {
     struct arena *const arena = study->sweep->arena;
     const struct case_values *const values = study->twin->values;

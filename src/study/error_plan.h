@@ -128,6 +128,10 @@ char *error_plan_twin_name(const struct error_study *study, int fish);
 enum status error_plan_create(struct arena *arena, struct error_sweep **plan, const struct case_values *values,
                               const struct study_options *options);
 
+/* Whether a fish has a value of a quantity: one of the whole case belongs to the first fish, and a comparison needs a
+ * twin. */
+bool error_plan_has_value(const struct error_study *study, int quantity, int fish);
+
 /* The index of a quantity of a fish in part, value and error. */
 int error_plan_place(const struct error_study *study, int quantity, int fish);
 

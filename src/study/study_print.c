@@ -736,7 +736,7 @@ static void sum_row(struct table *table, const struct error_study *study, const 
     table_cell(table, "%s", "");
     for (int q = 0; q < study->n_asked; q++) {
         const int place = error_plan_place(study, q, f);
-        const bool is_shown = f == 0 || quantity_of(study, q)->of_fish;
+        const bool is_shown = error_plan_has_value(study, q, f);
         for (int c = 0; c < OF_QUANTITY; c++) {
             if (is_shown && c == 0) {
                 part_cell(table, value[place], study->error[place]);
@@ -777,8 +777,8 @@ static void print_shares(const struct error_study *study, const struct error_stu
         for (int q = 0; q < study->n_asked; q++) {
             const int place = error_plan_place(study, q, f);
             const struct convergence_result *const part = &key->part[place];
-            if (key->n_levels == 1 || (f > 0 && !quantity_of(study, q)->of_fish)) {
-                const bool is_said = f == 0 || quantity_of(study, q)->of_fish;
+            const bool is_said = error_plan_has_value(study, q, f);
+            if (key->n_levels == 1 || !is_said) {
                 for (int c = 0; c < OF_QUANTITY; c++) table_cell(table, "%s", is_said && c == 1 ? "not varied" : "");
                 continue;
             }
@@ -844,11 +844,13 @@ static char *steps_text(const struct error_study *study, const struct error_stud
 static void print_sensitivities(const struct error_study *study, FILE *stream) {
     const int n_shown = study->n_fish < MAX_FISH_SHOWN ? study->n_fish : MAX_FISH_SHOWN;
     for (int f = 0; f < n_shown; f++) {
-        const bool is_compared = study->relation != ERROR_VALUE;
-        if (is_compared && error_plan_twin_fish(study, f) < 0) continue;
+        bool is_any = false;
         for (int q = 0; q < study->n_asked; q++) {
-            if (f == 0 || quantity_of(study, q)->of_fish) print_value(study, q, f, stream);
+            if (!error_plan_has_value(study, q, f)) continue;
+            is_any = true;
+            print_value(study, q, f, stream);
         }
+        if (!is_any) continue;
 
         // an insertion sort; an unknown derivative comes last
         int order[ERROR_STUDY_KEYS], n = 0;
@@ -1059,8 +1061,7 @@ static void print_comparison(const struct error_sweep *sweep, const struct membe
     for (int f = 0; f < ratio->n_fish; f++) {
         bool is_any = false;
         for (int q = 0; q < ratio->n_asked; q++) {
-            const bool of_fish = quantity_of(ratio, q)->of_fish;
-            if ((f > 0 && !of_fish) || (of_fish && error_plan_twin_fish(ratio, f) < 0)) continue;
+            if (!error_plan_has_value(ratio, q, f)) continue;
             is_any = true;
             print_value(ratio, q, f, stream);
             print_value(change, q, f, stream);
@@ -1074,7 +1075,7 @@ static void print_comparison(const struct error_sweep *sweep, const struct membe
     const struct error_study *const against = sweep->against;
     for (int i = 0; against && i < against->n_asked * against->n_fish; i++) {
         const int q = i % against->n_asked, f = i / against->n_asked;
-        if (f == 0 || quantity_of(against, q)->of_fish) print_value(against, q, f, stream);
+        if (error_plan_has_value(against, q, f)) print_value(against, q, f, stream);
     }
 }
 
@@ -1163,8 +1164,7 @@ static void write_csv_rows(const struct error_sweep *sweep, FILE *file) {
         const struct error_study *const study = &sweep->point[p];
         for (int i = 0; i < study->n_fish * study->n_asked; i++) {
             const int q = i % study->n_asked, f = i / study->n_asked, place = error_plan_place(study, q, f);
-            const bool of_fish = quantity_of(study, q)->of_fish, is_compared = study->relation != ERROR_VALUE;
-            if ((f > 0 && !of_fish) || (is_compared && of_fish && error_plan_twin_fish(study, f) < 0)) continue;
+            if (!error_plan_has_value(study, q, f)) continue;
             const struct csv_row row = {file, sweep, study, q, f};
             write_csv_row(&row, "", "sum", "", study->value[place], NAN, study->error[place], "");
 

@@ -381,7 +381,9 @@ TEST(a_plan_estimates_points_that_cost_the_same_once) {
 static const double speed = 1.5, cost = 0.08, nodes_error = 0.9, sheet_error = 0.02, interval_error = 0.4;
 
 static void set_value(struct member_file *member, const char *name, double value) {
-    *member_file_place(member, member_file_quantity_number(name), 0, 0) = value;
+    for (int f = 0; f < member->n_fish; f++) {
+        *member_file_place(member, member_file_quantity_number(name), f, 0) = value;
+    }
 }
 
 static struct member_file *make_members(const struct error_study *study) {
@@ -389,7 +391,7 @@ static struct member_file *make_members(const struct error_study *study) {
     struct member_file *members;
     NEW(study->sweep->arena, members, n);
     for (int m = 0; m < n; m++) {
-        member_file_create_values(study->sweep->arena, &members[m], 1);
+        member_file_create_values(study->sweep->arena, &members[m], study->n_fish);
         members[m].status = "complete";
         const double nodes = setting(study, m, "fish.nodes"), sheet = setting(study, m, "fish.sheet_points"),
                      interval = setting(study, m, "time.shedding_interval");
@@ -829,6 +831,17 @@ TEST(a_point_of_a_sweep_or_another_fish_is_a_twin) {
     assert_int_equal(error_plan_twin_fish(ratio, 0), -1);
     assert_int_equal(error_plan_twin_fish(ratio, 1), 0);
     assert_null(school.sweep->against);
+
+    // the leader has a value, and none of the comparison, which is no reason for a flag
+    convergence_sweep_judge(school.sweep, make_members(&school));
+    assert_true(error_plan_has_value(&school, 0, 0));
+    assert_false(error_plan_has_value(ratio, 0, 0));
+    NEAR(ratio->value[error_plan_place(ratio, 0, 1)], 1, 0, 1e-12);
+    for (int k = 0; k < ratio->n_keys; k++) {
+        const struct convergence_result *const leader = &ratio->key[k].part[error_plan_place(ratio, 0, 0)];
+        assert_true(isnan(leader->error));
+        assert_false(convergence_is_flagged(leader->verdict));
+    }
     for (int k = 0; k < ratio->n_keys; k++) {
         for (int i = 0; i < ratio->key[k].n_levels; i++)
             assert_int_equal(ratio->key[k].member[i], ratio->key[k].twin[i]);
