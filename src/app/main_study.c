@@ -265,7 +265,7 @@ enum status main_error(const struct request *request) {
     TRY(main_read_case(&with_errors, &values));
 
     // the assignment of the key `error`: the settings of the case, overridden by the command line
-    struct sweep_error error = {.within = NAN, .most = SWEEP_ERROR_MOST, .confirm = 1};
+    struct sweep_error error = {.most = SWEEP_ERROR_MOST, .confirm = 1};
     struct text assignment = {.arena = request->arena};
     if (values.error) error = *values.error;
     if (request->n_of > 0) {

@@ -1,7 +1,6 @@
 /* case.c: turns a tree into plain values, row by row of the table of keys. */
 #include "case/case.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -73,22 +72,26 @@ static void check_keys(const struct yaml_node *map, const char *section, const c
 
 // ---- values
 
-/* Read a node into a field. A time in beats is kept apart until the frequencies are known. */
-static void read_field(struct reading *reading, const struct key *key, int fish, void *field,
-                       const struct yaml_node *node, const char *path, struct yaml_errors *errors) {
-    if (key->type != DURATION) {
-        case_value_read(reading->values->arena, key, field, node, path, errors);
-        return;
+/* Read a node into the field of a key; false if it is no such value. A time in beats is kept apart until the
+ * frequencies are known. */
+static bool read_field(struct reading *reading, const struct key *key, int fish, const struct yaml_node *node,
+                       const char *path, struct yaml_errors *errors) {
+    struct case_values *const values = reading->values;
+    void *const field = case_table_field(key, values, &values->school.fish[fish]);
+    struct duration duration = {0};
+    const bool is_time = key->type == DURATION;
+    if (!case_value_read(values->arena, key, is_time ? &duration : field, node, path, errors)) return false;
+    if (duration.is_in_beats) {
+        case_table_add_beats(values, (struct case_beats){key, fish, duration.time, false});
+        return true;
     }
-    struct duration duration;
-    case_value_read(reading->values->arena, key, &duration, node, path, errors);
-    *(double *)field = duration.seconds;
-    if (isnan(duration.beats)) return;
-    case_table_add_beats(reading->values, (struct case_beats){key, fish, duration.beats, false});
+    if (is_time) *(double *)field = duration.time;
+    *case_table_state(values, key, fish) = KEY_WITH_VALUE;
+    return true;
 }
 
-/* Read the value of one key, of the case or of each fish. A field stays cleared if neither the case nor the table has a
- * value. */
+/* Read the value of one key, of the case or of each fish: what the case has, or else the default of the table, which
+ * also stands in for a value that cannot be read. */
 static void read_key(struct reading *reading, const struct key *key) {
     struct case_values *const values = reading->values;
     const struct case_tree *const tree = &reading->tree;
@@ -104,7 +107,6 @@ static void read_key(struct reading *reading, const struct key *key) {
         struct duration duration;
         void *const field = key->type == DURATION ? (void *)&duration : case_table_field(key, NULL, &scratch);
         snprintf(path, sizeof path, "defaults.%s", key->path);
-        case_value_clear(key, field);
         case_value_read(tree->arena, key, field, shared, path, &reading->errors);
     }
 
@@ -116,17 +118,16 @@ static void read_key(struct reading *reading, const struct key *key) {
     if (initial) yaml_tree_read(tree->arena, &standard, &source, &silent);
 
     for (int i = 0; i < case_table_n_fields(key, values); i++) {
-        void *const field = case_table_field(key, values, &values->school.fish[i]);
-        bool is_default;
+        bool is_default, is_read = true;
         const struct yaml_node *const node = case_merge_value(tree, key->path, i, &is_default);
-        case_value_clear(key, field);
         if (node) {
             snprintf(path, sizeof path, "%s", key->path);
             if (is_of_fish) snprintf(path, sizeof path, "fish[%d].%s", i, key->path + 5);
-            read_field(reading, key, i, field, node, path, is_default ? &silent : &reading->errors);
-        } else if (standard) {
-            read_field(reading, key, i, field, standard, key->path, &silent);
-        } else if (!key->derived) {
+            is_read = read_field(reading, key, i, node, path, is_default ? &silent : &reading->errors);
+        }
+        if (standard && !(node && is_read)) read_field(reading, key, i, standard, key->path, &silent);
+        if (!is_read) *case_table_state(values, key, i) = KEY_MISREAD;
+        if (!node && !standard && !key->derived) {
             // a section that is written as a value ("time: 3") has been reported already
             char section[80] = "";
             const char *const dot = strrchr(key->path, '.');
@@ -154,6 +155,7 @@ static void read_values(struct reading *reading) {
     // read the preset first, because the defaults of other keys depend on the preset
     NEW(values->arena, values->school.fish, n_fish);
     values->school.n_fish = n_fish > CASE_MAX_FISH ? 0 : n_fish;
+    NEW(values->arena, values->state, case_table_n * (n_fish > 1 ? n_fish : 1));
     const struct key *const preset = case_table_row("preset");
     read_key(reading, preset);
     for (int k = 0; k < case_table_n; k++) {

@@ -37,10 +37,22 @@ struct check {
     bool is_of_notes; /* skip a note on a value that another fish shares */
 };
 
+/* Whether a value in the same section, or of the same fish, cannot be read: relations to it would be reported in error.
+ */
+static bool is_misread(const struct check *check, const char *path) {
+    const bool is_of_fish = strncmp(path, "fish.", 5) == 0;
+    for (const struct key *key = case_table; key < case_table + case_table_n; key++) {
+        const int n_fields = case_table_n_fields(key, check->values), fish = is_of_fish ? check->index : 0;
+        if (strncmp(key->path, path, strcspn(path, ".")) != 0 || fish >= n_fields) continue;
+        if (*case_table_state(check->values, key, fish) == KEY_MISREAD) return true;
+    }
+    return false;
+}
+
 /* Under a condition, add an error or a note on the value at a path of the table. */
 __attribute__((format(printf, 4, 5))) static void complain_if(bool condition, const struct check *check,
                                                               const char *path, const char *format, ...) {
-    if (!condition) return;
+    if (!condition || is_misread(check, path)) return;
     char reason[512];
     va_list arguments;
     va_start(arguments, format);
@@ -104,7 +116,7 @@ static bool check_beats(struct check *check) {
 /* Require a time to be an integer multiple of a unit; name: path of the unit. */
 static void check_multiple(const struct check *check, const char *path, double time, const char *name, double unit) {
     const double n = round(time / unit), below = floor(time / unit);
-    if (!(fabs(time - n * unit) > 1e-9 * time)) return;  // not a number: reported when the value was read
+    if (fabs(time - n * unit) <= 1e-9 * time) return;
     complain_if(below < 1, check, path, "%g s is less than %s, %g s", time, name, unit);
     complain_if(below >= 1, check, path,
                 "%.9g s is not an integer multiple of %s, %.9g s; the nearest are %.9g and %.9g", time, name, unit,
@@ -128,7 +140,6 @@ static void check_time(const struct check *check) {
 
     // the steps of the method
     const struct case_solver *const solver = &check->values->solver;
-    if ((int)solver->method < 0) return;  // not read: reported already
     const struct method_properties *const method = &methods_table[solver->method];
     complain_if(!method->has_adaptive_steps && solver->step == 0, check, "solver.method",
                 "needs a fixed step: set solver.step, such as %.9g (s)", shedding);
@@ -146,7 +157,7 @@ static void check_swept_interval(const struct check *check, const char *path, do
     const struct case_values *const values = check->values;
     static const char interval[] = "time.shedding_interval";
     bool is_default;
-    if (!case_merge_value(check->tree, path, 0, &is_default)) return;
+    if (!case_merge_value(check->tree, path, 0, &is_default) || is_misread(check, path)) return;
     for (int a = 0; a < values->n_axes; a++) {
         for (int k = 0; k < values->sweep[a].n_keys; k++) {
             if (strcmp(values->sweep[a].key[k].path, path) == 0) return;
@@ -156,16 +167,15 @@ static void check_swept_interval(const struct check *check, const char *path, do
     for (int a = 0; a < values->n_axes; a++) {
         const struct sweep_axis *const axis = &values->sweep[a];
         for (int i = 0; i < axis->n_values * axis->n_keys; i++) {
-            double value = 0;
             const bool is_interval = strcmp(axis->key[i % axis->n_keys].path, interval) == 0;
             if (!is_interval) continue;
             // beats of the first member; another frequency changes both times alike, or is refused by its member
-            struct duration duration = {NAN, NAN};
+            struct duration duration;
             const struct key *const key = case_table_row(interval);
             struct yaml_errors silent = {.arena = check->tree->arena};
             const struct yaml_node node = {.kind = YAML_SCALAR, .text = axis->value[i]};
-            case_value_read(check->tree->arena, key, &duration, &node, interval, &silent);
-            value = isnan(duration.beats) ? duration.seconds : duration.beats * case_table_beat(values, key, 0);
+            if (!case_value_read(check->tree->arena, key, &duration, &node, interval, &silent)) continue;
+            const double value = duration.time * (duration.is_in_beats ? case_table_beat(values, key, 0) : 1);
             if (!(value > 0)) continue;
             if (!(fabs(time - round(time / value) * value) > 1e-9 * time)) continue;
             const struct yaml_node *const sweep = yaml_tree_find(check->tree->root, "sweep");
@@ -216,7 +226,7 @@ static void check_wake(const struct check *check) {
     const double lifetime = wake->lifetime, decay = wake->decay;
     const double n_vortices = fmin(lifetime, check->values->time.end) / interval;
     static const char only_sheet[] = "has an effect only with 'wake.shedding: sheet': remove the key";
-    const bool is_sheet = wake->shedding == SHEDDING_SHEET, is_other = (int)wake->shedding >= 0 && !is_sheet;
+    const bool is_sheet = wake->shedding == SHEDDING_SHEET, is_other = !is_sheet;
     complain_if(is_sheet && sheet->kutta == KUTTA_RATE, check, "sheet.kutta",
                 "'wake.shedding: sheet' requires a sheet strength that vanishes at the tail: use 'edge', or another "
                 "wake.shedding");
@@ -266,7 +276,8 @@ static void check_place(const struct check *check, const char *path, double plac
 
 /* Check the keys of a gust against the profile. */
 static void check_gust(const struct check *check) {
-    const struct school_parameters *const school = &check->values->school;
+    const struct case_values *const values = check->values;
+    const struct school_parameters *const school = &values->school;
     const struct fluid_parameters *const fluid = &school->fluid;
     const enum gust_profile profile = fluid->gust_profile;
     static const char frequency[] = "fluid.gust.frequency", wavelength[] = "fluid.gust.wavelength",
@@ -289,17 +300,19 @@ static void check_gust(const struct check *check) {
         const char *path;
         bool is_given, is_used;
         const char *profiles;
-    } keys[] = {{frequency, fluid->gust_frequency > 0, profile == GUST_UNIFORM, "uniform"},
-                {wavelength, fluid->gust_wavelength > 0, profile == GUST_SINE, "sine"},
-                {"fluid.gust.speed", !isnan(fluid->gust_speed), profile != GUST_UNIFORM, "sine or step"},
-                {"fluid.gust.position", fabs(fluid->gust_position) > 0, profile != GUST_UNIFORM, "sine or step"},
-                {"fluid.gust.gradient_distance", !isnan(fluid->gust_gradient_distance), profile == GUST_STEP, "step"}};
-    for (size_t i = 0; (int)profile >= 0 && i < sizeof keys / sizeof *keys; i++) {
+    } keys[] = {
+        {frequency, fluid->gust_frequency > 0, profile == GUST_UNIFORM, "uniform"},
+        {wavelength, fluid->gust_wavelength > 0, profile == GUST_SINE, "sine"},
+        {"fluid.gust.speed", case_table_is_set(values, "fluid.gust.speed", 0), profile != GUST_UNIFORM, "sine or step"},
+        {"fluid.gust.position", fabs(fluid->gust_position) > 0, profile != GUST_UNIFORM, "sine or step"},
+        {"fluid.gust.gradient_distance", case_table_is_set(values, "fluid.gust.gradient_distance", 0),
+         profile == GUST_STEP, "step"}};
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
         complain_if(keys[i].is_given && !keys[i].is_used, check, keys[i].path,
                     "has an effect only with 'profile: %s': remove the key", keys[i].profiles);
     }
 
-    for (int f = 0; f < school->n_fish && (int)profile > GUST_UNIFORM && has_gust; f++) {
+    for (int f = 0; f < school->n_fish && profile != GUST_UNIFORM && has_gust; f++) {
         if (school->fish[f].force != FORCE_REACTIVE) continue;
         complain_if(true, check, name,
                     "the reactive force needs a gust that is uniform along the body: use 'force: pressure' for every "
@@ -336,13 +349,12 @@ static void check_fluid(const struct check *check) {
 // ---- body and wave
 
 /* True if a number of the fish differs from the default of the key and from the default under a preset. The presence of
- * a key is no criterion: a case printed by `shoal show` has every key, and no preset. False for a value that was not
- * read. */
+ * a key is no criterion: a case printed by `shoal show` has every key that has a value, and no preset. */
 static bool is_given(const struct check *check, const char *path) {
     const struct key *const key = case_table_row(path);
     const double value = *(const double *)((const char *)check->fish + key->offset);
-    double initial = NAN, published;
-    if (!key->initial) return !isnan(value);  // `shoal show` omits a key without a default
+    double initial, published;
+    if (!key->initial) return case_table_is_set(check->values, path, check->index);
     text_number(key->initial, &initial);
     if (!key->published || !text_number(key->published, &published)) published = initial;
     return fabs(value - initial) > 0 && fabs(value - published) > 0;
@@ -359,7 +371,7 @@ static void check_body(const struct check *check) {
     const struct fish_parameters *const fish = check->fish;
     const struct body_parameters *const body = &fish->body;
     const struct wave_parameters *const wave = &fish->wave;
-    const int profile = (int)body->profile;
+    const enum profile profile = body->profile;
 
     // with a table profile pairs from nose to tail, or one value per edge; no list for other profiles
     static const char *const paths[] = {"fish.body.thickness_table", "fish.body.depth_table"};
@@ -367,7 +379,7 @@ static void check_body(const struct check *check) {
         const struct number_list *const list = i == 0 ? &body->thickness_table : &body->depth_table;
         const bool is_read = list->n > 0 || !check_is_written(check, paths[i]), are_pairs = list->width == 2;
         const bool is_table = profile == PROFILE_TABLE && is_read;
-        complain_if(is_table && !are_pairs && fish->nodes > 0 && list->n != fish->nodes - 1, check, paths[i],
+        complain_if(is_table && !are_pairs && list->n != fish->nodes - 1, check, paths[i],
                     "'profile: table' needs pairs [distance over length, value], as in [[0, 0.01], [0.3, 0.1], [1, "
                     "0.02]], or one value per edge, %d for %d nodes; got %d",
                     fish->nodes - 1, fish->nodes, list->n);
@@ -380,11 +392,11 @@ static void check_body(const struct check *check) {
         }
         complain_if(is_table && are_pairs && !is_ascending, check, paths[i],
                     "the distances must grow from 0 at the nose to 1 at the tail, in body lengths");
-        complain_if(profile >= 0 && profile != PROFILE_TABLE && list->n > 0, check, paths[i],
+        complain_if(profile != PROFILE_TABLE && list->n > 0, check, paths[i],
                     "has an effect only with 'profile: table': remove the key");
     }
-    complain_if(profile >= 0 && profile != PROFILE_JOUKOWSKI && body->tail_thickness > 0, check,
-                "fish.body.tail_thickness", "has an effect only with 'profile: joukowski': remove the key");
+    complain_if(profile != PROFILE_JOUKOWSKI && body->tail_thickness > 0, check, "fish.body.tail_thickness",
+                "has an effect only with 'profile: joukowski': remove the key");
 
     // a number, a wavelength or a table
     static const char number[] = "fish.wave.number", wavelength[] = "fish.wave.wavelength";
@@ -396,14 +408,13 @@ static void check_body(const struct check *check) {
                 "has no effect with wave.table: remove the key");
 
     // the curvature of a joint, 2 tan(angle/2), is singular at an angle of pi
-    if (fish->nodes == 0 || fish->reference_nodes == 0) return;
     double envelope = 0, curvature = 0;
     for (int k = 1; k < fish->nodes - 1; k++) {
         const double q = (double)k / (fish->nodes - 1);
         envelope = fmax(envelope, fabs(wave->constant + wave->linear * q + wave->quadratic * q * q));
     }
     for (int i = 0; i < wave->table.n * wave->table.width; i++) curvature = fmax(curvature, fabs(wave->table.value[i]));
-    const double bias = (int)fish->control.law > CONTROL_NONE ? fish->control.limit : fabs(fish->control.bias);
+    const double bias = fish->control.law != CONTROL_NONE ? fish->control.limit : fabs(fish->control.bias);
     const double of_wave = envelope * fabs(wave->amplitude) * (fish->reference_nodes - 1) / (fish->nodes - 1);
     const double most = fish->control.law == CONTROL_PLACE ? 1 + fish->control.amplitude_limit : 1;
     const double turn =
@@ -503,7 +514,8 @@ static void check_vortices(const struct check *check) {
     complain_if(street->n > 0 && street->circulation == 0, check, of_street, "needs a wake.street.circulation");
     complain_if(street->n == 0 && street->spacing > 0, check, "wake.street.spacing", no_street);
     complain_if(street->n == 0 && fabs(street->circulation) > 0, check, "wake.street.circulation", no_street);
-    complain_if(street->n == 0 && street->row_distance >= 0, check, "wake.street.row_distance", no_street);
+    complain_if(street->n == 0 && case_table_is_set(check->values, "wake.street.row_distance", 0), check,
+                "wake.street.row_distance", no_street);
     if (vortices->n == 0 && street->n == 0) return;
 
     complain_if(vortices->n > 0 && vortices->width != 3, check, "wake.vortices",
@@ -552,7 +564,7 @@ static void check_pressure(const struct check *check) {
 
     complain_if(school->wake.shedding != SHEDDING_SHEET, check, "fish.force", "pressure needs 'wake.shedding: sheet'");
     complain_if(school->sheet.curve != BODY_LINE_SMOOTH, check, "fish.force", "pressure needs 'sheet.curve: smooth'");
-    complain_if(fish->nodes > 0 && fish->sheet_points < 2 * fish->nodes - 1, check, of_points,
+    complain_if(fish->sheet_points < 2 * fish->nodes - 1, check, of_points,
                 "with 'force: pressure' the added mass of %d nodes needs at least %d points, not %d", fish->nodes,
                 2 * fish->nodes - 1, fish->sheet_points);
     static const char extent[] = "fish.added_mass.extent",
@@ -586,11 +598,10 @@ static void check_pressure(const struct check *check) {
 
     // with fewer points the lift oscillates by 6 per cent while a gust passes (doc/verification.md, "Encounters")
     const bool is_step = fluid->gust_profile == GUST_STEP, is_sine = fluid->gust_profile == GUST_SINE;
-    const double rise = is_step ? fluid->gust_gradient_distance : is_sine ? fluid->gust_wavelength / 2 : NAN;
+    const double rise = is_step ? fluid->gust_gradient_distance : is_sine ? fluid->gust_wavelength / 2 : 0;
     const double least = 1 + ceil(6 * fish->length / rise - 1e-9);
-    complain_if(rise > 0 && fabs(fluid->gust_amplitude) > 0 && fish->sheet_points > 0 && fish->sheet_points < least,
-                check, of_points, "a gust that changes within %g m needs at least %g points, not %d", rise, least,
-                fish->sheet_points);
+    complain_if(rise > 0 && fabs(fluid->gust_amplitude) > 0 && fish->sheet_points < least, check, of_points,
+                "a gust that changes within %g m needs at least %g points, not %d", rise, least, fish->sheet_points);
 }
 
 // ---- control
@@ -721,6 +732,7 @@ static void check_derived(const struct check *check, bool is_of_fish) {
     for (int k = 0; k < case_table_n; k++) {
         const struct key *const key = &case_table[k];
         if (!key->cause || case_table_is_of_fish(key) != is_of_fish || check_is_written(check, key->path)) continue;
+        if (!case_table_is_set(check->values, key->path, is_of_fish ? check->index : 0)) continue;
 
         // the key that puts the number out of its range
         const char *cause = key->cause;
@@ -735,7 +747,7 @@ static void check_derived(const struct check *check, bool is_of_fish) {
         const double value = key->type == INTEGER ? *(const int *)field : *(const double *)field;
         const struct bounds *const bounds = &key->bounds;
         const bool is_low = value < bounds->min || (bounds->is_min_open && value <= bounds->min);
-        const bool is_out = is_low || value > bounds->max || isinf(value);  // false for a value that was not derived
+        const bool is_out = is_low || value > bounds->max || isinf(value);
         if (!is_out || !check_is_written(check, cause)) continue;
 
         struct text range = {.arena = check->errors->arena};

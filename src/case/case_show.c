@@ -16,6 +16,7 @@ enum { COMMENT_COLUMN = 40 };
 /* Add every row of the table that belongs to a fish, or with fish NULL every row that belongs to none. */
 static void show_rows(struct text *text, struct case_values *values, struct fish_parameters *fish) {
     const char *before = NULL;
+    const int f = fish ? (int)(fish - values->school.fish) : 0;
     for (int k = 0; k < case_table_n; k++) {
         const struct key *const key = &case_table[k];
         if (case_table_is_of_fish(key) != (fish != NULL)) continue;
@@ -23,9 +24,7 @@ static void show_rows(struct text *text, struct case_values *values, struct fish
 
         // skip keys that are applied already, and keys without a value
         if (!case_table_is_value(key) || strcmp(key->path, "preset") == 0) continue;
-        if (key->type == STRING && !*(char *const *)field) continue;
-        if ((key->type == REAL || key->type == DURATION) && isnan(*(const double *)field)) continue;
-        if (key->type == INTEGER && *(const int *)field < key->bounds.min) continue;
+        if (*case_table_state(values, key, f) == KEY_WITHOUT_VALUE) continue;
         if ((key->type == NUMBERS || key->type == PROFILE || key->type == ROWS) &&
             ((const struct number_list *)field)->n == 0)
             continue;
@@ -44,10 +43,9 @@ static void show_rows(struct text *text, struct case_values *values, struct fish
         const bool is_first_of_fish = fish && !before;
         const int indent = 2 * depth + (fish ? 4 : 0);
         text_add(text, "%*s%s%s: ", is_first_of_fish ? indent - 2 : indent, "", is_first_of_fish ? "- " : "", name);
-        const int f = fish ? (int)(fish - values->school.fish) : 0;
         const struct case_beats *const beats = case_table_in_beats(values, key, f);
         // a time that was rounded is shown in seconds, because the interval that it was rounded to is now given
-        const double in_seconds = beats ? text_round(beats->n * case_table_beat(values, key, f)) : NAN;
+        const double in_seconds = beats ? text_round(beats->n * case_table_beat(values, key, f)) : 0;
         const bool is_as_given = beats && !beats->is_default && !(fabs(in_seconds - *(const double *)field) > 0);
         if (is_as_given) {
             text_add_number(text, beats->n);
@@ -167,7 +165,7 @@ static void show_expectation(struct text *text, const struct case_values *values
         double value;
     } bounds[] = {{"least", one->min}, {"most", one->max}, {"spread", one->spread}, {"ratio", one->ratio}};
     for (int b = 0; b < 4 && !one->fails; b++) {
-        if (isnan(bounds[b].value)) continue;
+        if (isinf(bounds[b].value)) continue;
         text_add(text, ", %s: ", bounds[b].name);
         text_add_number(text, bounds[b].value);
     }

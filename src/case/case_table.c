@@ -36,131 +36,128 @@ enum { NAME_BYTES = 200, FILE_BYTES = 4000, MAX_NODES = 10000, MAX_THREADS = 102
 // ---- derived defaults, in the order of the table
 
 // a product or quotient of decimals is the decimal, without the rounding of the operation: 0.3, not 3 * 0.1
-static void set_default(double *value, double standard) {
-    if (isnan(*value)) *value = text_round(standard);
-}
-
-static void derive_case_name(const struct key_place *at) {
-    if (at->values->name) return;
-    const char *const slash = strrchr(at->origin, '/'), *const from = slash ? slash + 1 : at->origin;
-    const char *const dot = strrchr(from, '.');
-    const size_t length = dot && dot > from ? (size_t)(dot - from) : strlen(from);
-    at->values->name = length > 0 ? arena_text(at->values->arena, "%.*s", (int)length, from) : "case";
-}
-
-/* Round a time to a multiple of a unit, up or to the nearest; false if the time is a multiple already. */
-static bool round_to_multiple(double *time, double unit, bool up) {
-    const double n = *time / unit, nearest = fmax(round(n), 1);
-    if (!(*time > 0) || fabs(n - nearest) <= 1e-9 * n) return false;
-    *time = (up ? ceil(n) : nearest) * unit;
+static bool derive_number(const struct key_place *at, double number) {
+    *(double *)at->field = text_round(number);
     return true;
 }
 
-/* Set the shedding interval. If the case gives no seconds for it, round the end of the run up to an event, and the
- * output and checkpoint intervals to the nearest multiples; times that were not read are left unset. doc/model.md,
- * section 7. */
-static void derive_shedding_interval(const struct key_place *at) {
-    struct case_values *const values = at->values;
-    double *const interval = &values->school.shedding_interval, *const rows = &values->time.output_interval,
-                  fastest = 0;
-    const struct key *const key = case_table_row("time.shedding_interval");
-    if (!isnan(*interval) && !case_table_in_beats(values, key, 0)) return;
-
-    for (int i = 0; i < values->school.n_fish; i++)
-        fastest = fmax(fastest, fish_parameters_frequency(&values->school.fish[i]));
-    if (isnan(*interval)) *interval = fastest > 0 ? 1 / (100 * fastest) : 0.01;
-    round_to_multiple(&values->time.end, *interval, true);
-    round_to_multiple(&values->time.checkpoint_interval, *interval, false);
-
-    // round the wake interval too if the output interval is rounded or not read
-    const bool are_free = isnan(*rows) || round_to_multiple(rows, *interval, false);
-    if (are_free) round_to_multiple(&values->output.wake_interval, isnan(*rows) ? 10 * *interval : *rows, false);
+static bool derive_word(const struct key_place *at, int word) {
+    *(int *)at->field = word;
+    return true;
 }
 
-static void derive_gust(const struct key_place *at) {
-    struct fluid_parameters *const fluid = &at->values->school.fluid;
+static bool derive_case_name(const struct key_place *at) {
+    const char *const slash = strrchr(at->origin, '/'), *const from = slash ? slash + 1 : at->origin;
+    const char *const dot = strrchr(from, '.');
+    const size_t length = dot && dot > from ? (size_t)(dot - from) : strlen(from);
+    *(char **)at->field = length > 0 ? arena_text(at->values->arena, "%.*s", (int)length, from) : "case";
+    return true;
+}
+
+static bool derive_gust_speed(const struct key_place *at) {
+    const struct fluid_parameters *const fluid = &at->values->school.fluid;
+    if (fluid->gust_profile == GUST_UNIFORM) return false;
+    return derive_number(at, hypot(fluid->velocity[0], fluid->velocity[1]));
+}
+
+static bool derive_gradient_distance(const struct key_place *at) {
+    const struct school_parameters *const school = &at->values->school;
     double length = 0;
-    for (int f = 0; f < at->values->school.n_fish; f++) length = fmax(length, at->values->school.fish[f].length);
-    if ((int)fluid->gust_profile > GUST_UNIFORM) {
-        set_default(&fluid->gust_speed, hypot(fluid->velocity[0], fluid->velocity[1]));
-    }
-    if (fluid->gust_profile == GUST_STEP) set_default(&fluid->gust_gradient_distance, length / 5);
+    for (int f = 0; f < school->n_fish; f++) length = fmax(length, school->fish[f].length);
+    return school->fluid.gust_profile == GUST_STEP && derive_number(at, length / 5);
 }
 
-/* Set lifetime and decay, and the distance of the rows of a street. */
-static void derive_wake(const struct key_place *at) {
+static bool derive_lifetime(const struct key_place *at) {
+    const struct key *const lifetime = case_table_row("wake.lifetime");
+    const double period = case_table_beat(at->values, lifetime, 0);
+    if (!(period > 0)) return derive_number(at, 2);
+    case_table_add_beats(at->values, (struct case_beats){lifetime, 0, 8, true});
+    return derive_number(at, 8 * period);
+}
+
+static bool derive_decay(const struct key_place *at) {
     struct case_values *const values = at->values;
-    struct wake_parameters *const wake = &values->school.wake;
-    struct street_parameters *const street = &wake->street;
     const struct key *const lifetime = case_table_row("wake.lifetime"), *const decay = case_table_row("wake.decay");
     const double period = case_table_beat(values, lifetime, 0);
-
-    if (isnan(wake->lifetime) && period > 0) {
-        case_table_add_beats(values, (struct case_beats){lifetime, 0, 8, true});
-        wake->lifetime = text_round(8 * period);
-    }
-    set_default(&wake->lifetime, 2);
 
     // to the modes of a school that does not beat a wake seems to end abruptly, unless it decays over most of its life
     const double part = period > 0 ? 0.25 : 0.75;
     const struct case_beats *const in_beats = period > 0 ? case_table_in_beats(values, lifetime, 0) : NULL;
-    if (isnan(wake->decay) && in_beats) {
-        const double n = text_round(part * in_beats->n);
-        case_table_add_beats(values, (struct case_beats){decay, 0, n, true});
-        wake->decay = text_round(n * period);
-    }
-    set_default(&wake->decay, part * wake->lifetime);
+    if (!in_beats) return derive_number(at, part * values->school.wake.lifetime);
+    const double n = text_round(part * in_beats->n);
+    case_table_add_beats(values, (struct case_beats){decay, 0, n, true});
+    return derive_number(at, n * period);
+}
 
-    // the ratio of a street without linear growth of disturbances: cosh^2(pi h/a) = 2
-    if (street->n > 0) set_default(&street->row_distance, acosh(sqrt(2)) / M_PI * street->spacing);
+// the ratio of a street without linear growth of disturbances: cosh^2(pi h/a) = 2
+static bool derive_row_distance(const struct key_place *at) {
+    const struct street_parameters *const street = &at->values->school.wake.street;
+    return street->n > 0 && derive_number(at, acosh(sqrt(2)) / M_PI * street->spacing);
 }
 
 char *case_table_fish_name(struct arena *arena, int f) {
     return arena_text(arena, "fish%d", f + 1);
 }
 
-/* Set the defaults of a fish that follow from other keys. */
-static void derive_fish(const struct key_place *at) {
+static bool derive_fish_name(const struct key_place *at) {
+    *(char **)at->field = case_table_fish_name(at->values->arena, at->number);
+    return true;
+}
+
+static bool derive_force(const struct key_place *at) {
     const struct school_parameters *const school = &at->values->school;
-    struct fish_parameters *const fish = at->fish;
-    if (!fish->name) fish->name = case_table_fish_name(at->values->arena, (int)(fish - school->fish));
-
-    // the model of the force, and the points that the span needs
     const bool is_possible = school->wake.shedding == SHEDDING_SHEET && school->sheet.curve == BODY_LINE_SMOOTH;
-    if ((int)fish->force < 0) fish->force = is_possible ? FORCE_PRESSURE : FORCE_REACTIVE;
-    if ((int)fish->span < 0) fish->span = fish->force == FORCE_PRESSURE ? SPAN_FINITE : SPAN_INFINITE;
-    const int usual = fish->nodes > 17 ? 2 * fish->nodes - 1 : 33, of_depth = fish_sheet_least(fish);
-    if (fish->sheet_points <= 0) fish->sheet_points = usual > of_depth ? usual : of_depth;
+    return derive_word(at, is_possible ? FORCE_PRESSURE : FORCE_REACTIVE);
+}
 
-    // cross-flow separates from a free body; the flow of a held plate and of two dimensions is attached
-    const bool is_held = (int)fish->motion.prescribed > PRESCRIBED_NONE;
-    set_default(&fish->drag.normal, fish->force != FORCE_PRESSURE || (fish_is_strip(fish) && !is_held));
+static bool derive_span(const struct key_place *at) {
+    return derive_word(at, at->fish->force == FORCE_PRESSURE ? SPAN_FINITE : SPAN_INFINITE);
+}
 
-    // the model has its own factors of friction unless these are read
-    fish->drag.has_waving = !isnan(fish->drag.waving);
-    fish->drag.has_form = !isnan(fish->drag.form);
+static bool derive_sheet_points(const struct key_place *at) {
+    const int nodes = at->fish->nodes, usual = nodes > 17 ? 2 * nodes - 1 : 33, of_depth = fish_sheet_least(at->fish);
+    *(int *)at->field = usual > of_depth ? usual : of_depth;
+    return true;
+}
 
-    // times in beats
-    const double beat = fish_parameters_frequency(fish), frequency = fish->wave.frequency;
-    const double period = frequency > 0 ? 1 / frequency : 0;
-    set_default(&fish->body.relaxation_time, beat > 0 ? 0.02 / beat : 0);
-    set_default(&fish->wave.ramp, period);
-    set_default(&fish->control.filter, period);
-    set_default(&fish->control.course_filter, period / 4);
-    set_default(&fish->control.ramp, period > 0 ? period / 2 : 1);
+static bool derive_relaxation_time(const struct key_place *at) {
+    const double beat = fish_parameters_frequency(at->fish);
+    return derive_number(at, beat > 0 ? 0.02 / beat : 0);
+}
 
-    // the wavelength is another form of wave.number; the table has the default of wave.number
-    if (!isnan(fish->wave.wavelength)) fish->wave.number = -2 * M_PI / fish->wave.wavelength;
-    fish->wave.wavelength = NAN;
+static double wave_period(const struct key_place *at) {
+    return at->fish->wave.frequency > 0 ? 1 / at->fish->wave.frequency : 0;
+}
 
-    // steering; the gain of the law: doc/model.md, section 11, cases/studies/step_response.yaml
-    struct control_parameters *const control = &fish->control;
-    if ((int)control->law < 0) control->law = control->waypoints.n > 0 ? CONTROL_COURSE : CONTROL_NONE;
-    if (control->desired_heading.n == 0) {
-        NEW(at->values->arena, control->desired_heading.value, 2);
-        control->desired_heading.value[1] = fish->start_heading;
-        control->desired_heading.n = 1;
-    }
+static bool derive_period(const struct key_place *at) {
+    return derive_number(at, wave_period(at));
+}
+
+static bool derive_quarter_period(const struct key_place *at) {
+    return derive_number(at, wave_period(at) / 4);
+}
+
+static bool derive_control_ramp(const struct key_place *at) {
+    const double period = wave_period(at);
+    return derive_number(at, period > 0 ? period / 2 : 1);
+}
+
+// cross-flow separates from a free body; the flow of a held plate and of two dimensions is attached
+static bool derive_normal_drag(const struct key_place *at) {
+    const bool is_held = at->fish->motion.prescribed != PRESCRIBED_NONE;
+    return derive_number(at, at->fish->force != FORCE_PRESSURE || (fish_is_strip(at->fish) && !is_held));
+}
+
+static bool derive_control_law(const struct key_place *at) {
+    return derive_word(at, at->fish->control.waypoints.n > 0 ? CONTROL_COURSE : CONTROL_NONE);
+}
+
+static bool derive_desired_heading(const struct key_place *at) {
+    struct number_list *const heading = at->field;
+    NEW(at->values->arena, heading->value, 2);
+    heading->value[1] = at->fish->start_heading;
+    heading->n = 1;
+    return true;
 }
 
 // ---- the table
@@ -181,8 +178,7 @@ const struct key case_table[] = {
      .meaning = "time between two events; at each event every fish sheds a vortex",
      .derived = "1/100 of the period of the fastest beat or prescribed motion, 0.01 s without a beat; time.end and the "
                 "output intervals are then rounded to events",
-     .derive = derive_shedding_interval, .cause = "fish.wave.frequency", .synonyms = "dt delta_t timestep time_step",
-     .published = "0.01"},
+     .cause = "fish.wave.frequency", .synonyms = "dt delta_t timestep time_step", .published = "0.01"},
     {"time.output_interval", DURATION, AT(time.output_interval), NULL, ABOVE(0), "s",
      .meaning = "time between two rows of output, an integer multiple of shedding_interval",
      .derived = "ten shedding intervals", .multiple = {10, "time.shedding_interval"}, .cause = "time.shedding_interval",
@@ -215,12 +211,13 @@ const struct key case_table[] = {
      .meaning = "profile sine: wavelength of the gust"},
     {"fluid.gust.speed", REAL, AT(school.fluid.gust_speed), NULL, ANY, "m s-1",
      .meaning = "profile sine, step: speed of the gust along the stream", .derived = "the speed of the stream",
-     .derive = derive_gust},
+     .derive = derive_gust_speed},
     {"fluid.gust.position", REAL, AT(school.fluid.gust_position), "0", ANY, "m",
      .meaning = "profile sine, step: place along the stream of a zero, or of the middle of the step, at the start"},
     {"fluid.gust.gradient_distance", REAL, AT(school.fluid.gust_gradient_distance), NULL, ABOVE(0), "m",
      .meaning = "profile step: distance over which the gust rises to the amplitude",
-     .derived = "a fifth of the length of the longest fish", .derive = derive_gust, .cause = "fish.length"},
+     .derived = "a fifth of the length of the longest fish", .derive = derive_gradient_distance,
+     .cause = "fish.length"},
     {"fluid.walls", NUMBERS, AT(school.fluid.walls), "[]", ANY, "m",
      .meaning = "straight walls along x: y of one wall, or of both walls of a channel",
      .synonyms = "wall channel boundary tank ground bottom"},
@@ -240,11 +237,11 @@ const struct key case_table[] = {
      .meaning = "pressure.span finite: factor of the length s(d) of the legs of the vortex rings in the wake "
                 "(doc/model.md, section 18), a choice of the model"},
     {"wake.lifetime", DURATION, AT(school.wake.lifetime), NULL, ABOVE(0), "s",
-     .meaning = "age at which a vortex is removed", .derived = "8 beats; 2 s if no fish beats", .derive = derive_wake,
-     .cause = "fish.wave.frequency", .published = "2", .synonyms = "life max_age age"},
+     .meaning = "age at which a vortex is removed", .derived = "8 beats; 2 s if no fish beats",
+     .derive = derive_lifetime, .cause = "fish.wave.frequency", .published = "2", .synonyms = "life max_age age"},
     {"wake.decay", DURATION, AT(school.wake.decay), NULL, FROM(0), "s",
      .meaning = "last part of the lifetime, in which the circulation decays to 0",
-     .derived = "1/4 of the lifetime; 3/4 if no fish beats", .derive = derive_wake, .cause = "wake.lifetime",
+     .derived = "1/4 of the lifetime; 3/4 if no fish beats", .derive = derive_decay, .cause = "wake.lifetime",
      .published = "0"},
     {"wake.shedding", CHOICE, AT(school.wake.shedding), "sheet", ANY, "",
      .meaning = "sheet: a vortex sheet grows from the tail; continuous: a vortex grows between events; impulsive: a "
@@ -273,7 +270,7 @@ const struct key case_table[] = {
      .meaning = "distance of neighbouring vortices of a row"},
     {"wake.street.row_distance", REAL, AT(school.wake.street.row_distance), NULL, FROM(0), "m",
      .meaning = "distance of the two rows", .derived = "0.2805 spacing, the stable street of von Karman",
-     .derive = derive_wake, .cause = "wake.street.spacing", .synonyms = "width"},
+     .derive = derive_row_distance, .cause = "wake.street.spacing", .synonyms = "width"},
     {"wake.street.circulation", REAL, AT(school.wake.street.circulation), "0", ANY, "m2 s-1",
      .meaning = "circulation of a vortex to the right of the stream; the row to the left has the opposite: positive "
                 "behind a body with drag, negative behind a swimmer"},
@@ -358,7 +355,7 @@ const struct key case_table[] = {
      .meaning = "defaults: {fish: {...}}: values for every fish without the key", .synonyms = "default common shared"},
 
     {"fish.name", STRING, IN_FISH(name), NULL, FROM_TO(1, NAME_BYTES), "",
-     .meaning = "name of the fish, unique in the school", .derived = "fish1, fish2, ...", .derive = derive_fish},
+     .meaning = "name of the fish, unique in the school", .derived = "fish1, fish2, ...", .derive = derive_fish_name},
     {"fish.length", REAL, IN_FISH(length), "1", ABOVE(0), "m", .meaning = "body length L", .synonyms = "size chord"},
 
     {"fish.force", CHOICE, IN_FISH(force), NULL, ANY, "",
@@ -366,12 +363,12 @@ const struct key case_table[] = {
          "force of the fluid besides drag; pressure: pressure jump across the bound sheet; reactive: "
          "accelerated fluid of a slender body, with the flux at the tail; published: added mass across each edge",
      .words = WORDS("reactive", "published", "pressure"), .published = "published",
-     .derived = "pressure with wake.shedding sheet and sheet.curve smooth, else reactive", .derive = derive_fish,
+     .derived = "pressure with wake.shedding sheet and sheet.curve smooth, else reactive", .derive = derive_force,
      .follows = WORDS("wake.shedding", "sheet.curve")},
     {"fish.pressure.span", CHOICE, IN_FISH(span), NULL, ANY, "",
      .meaning = "force pressure: span of the sheets; finite: the depth of the body, with vortex rings; infinite: "
                 "two-dimensional flow",
-     .words = WORDS("finite", "infinite"), .derived = "finite with force pressure", .derive = derive_fish,
+     .words = WORDS("finite", "infinite"), .derived = "finite with force pressure", .derive = derive_span,
      .follows = WORDS("fish.force")},
     {"fish.pressure.suction", REAL, IN_FISH(suction), "1", FROM_TO(0, 1), "",
      .meaning = "force pressure: fraction of the leading-edge suction that acts on the body"},
@@ -392,7 +389,7 @@ const struct key case_table[] = {
     {"fish.sheet_points", INTEGER, IN_FISH(sheet_points), NULL, FROM_TO(5, MAX_NODES), "",
      .meaning = "number of vortices of the bound sheet", .synonyms = "vortices panels bound_vortices",
      .published = "21", .derived = "2 nodes - 1, at least 33; with pressure.span finite at least 1 + 5 L/w",
-     .derive = derive_fish, .cause = "fish.body.depth"},
+     .derive = derive_sheet_points, .cause = "fish.body.depth"},
 
     {"fish.body.profile", CHOICE, IN_FISH(body.profile), "joukowski", ANY, "",
      .meaning = "thickness along the body: a Joukowski foil, uniform, or the lists thickness_table and depth_table",
@@ -430,8 +427,9 @@ const struct key case_table[] = {
      .published = "1"},
     {"fish.body.relaxation_time", DURATION, IN_FISH(body.relaxation_time), NULL, FROM(0), "s",
      .meaning = "Kelvin-Voigt damping: ratio of damping to stiffness", .published = "0",
-     .derived = "1/50 of the period of the beat or of the prescribed motion (0 without a beat)", .derive = derive_fish,
-     .cause = "fish.wave.frequency", .follows = WORDS("fish.wave.frequency", "fish.motion.frequency")},
+     .derived = "1/50 of the period of the beat or of the prescribed motion (0 without a beat)",
+     .derive = derive_relaxation_time, .cause = "fish.wave.frequency",
+     .follows = WORDS("fish.wave.frequency", "fish.motion.frequency")},
     {"fish.body.damping", CHOICE, IN_FISH(body.damping), "strain", ANY, "",
      .meaning = "internal damping of bending; strain: of the curvature minus the natural curvature; curvature: of the "
                 "total curvature",
@@ -451,7 +449,7 @@ const struct key case_table[] = {
      .synonyms = "beta wavenumber wave_number k"},
     {"fish.wave.wavelength", REAL, IN_FISH(wave.wavelength), NULL, FROM(1e-5), "",
      .meaning = "wavelength in body lengths of a wave from head to tail; sets number to -2 pi/wavelength",
-     .derived = "from wave.number", .derive = derive_fish, .synonyms = "lambda"},
+     .derived = "from wave.number", .synonyms = "lambda"},
     {"fish.wave.table", ROWS, IN_FISH(wave.table), "[]", ANY, "",
      .meaning = "natural curvature times body length in place of the wave: rows at equal distances from nose to tail, "
                 "of values at equal phases of one period",
@@ -461,7 +459,7 @@ const struct key case_table[] = {
     {"fish.wave.phase", REAL, IN_FISH(wave.phase), "0", ANGLE, "degree", .meaning = "phase at time 0"},
     {"fish.wave.ramp", DURATION, IN_FISH(wave.ramp), NULL, FROM(0), "s",
      .meaning = "time over which the amplitude is ramped up", .derived = "one period, 1/frequency (0 for frequency 0)",
-     .derive = derive_fish, .cause = "fish.wave.frequency"},
+     .derive = derive_period, .cause = "fish.wave.frequency"},
 
     {"fish.drag.tangential", REAL, IN_FISH(drag.tangential), "4e-3", FROM(0), "",
      .meaning = "tangential drag coefficient (friction)", .synonyms = "friction c_f cf", .published = "1e-3"},
@@ -485,7 +483,7 @@ const struct key case_table[] = {
     {"fish.drag.normal", REAL, IN_FISH(drag.normal), NULL, FROM(0), "",
      .meaning = "coefficient of the drag across the body: with force pressure, of the separated cross-flow",
      .synonyms = "c_d cd lateral", .published = "4",
-     .derived = "1, or 0 with force pressure and span infinite or a prescribed motion", .derive = derive_fish,
+     .derived = "1, or 0 with force pressure and span infinite or a prescribed motion", .derive = derive_normal_drag,
      .follows = WORDS("fish.force", "fish.pressure.span", "fish.motion.prescribed")},
     {"fish.drag.law", CHOICE, IN_FISH(drag.law), "quadratic", ANY, "",
      .meaning = "dependence of both drag forces on the velocity v: v |v|, or v (V1 + |v|)", .published = "quadratic",
@@ -538,12 +536,13 @@ const struct key case_table[] = {
                 "mean over a period; course: of the course over the last period; place: course and amplitude for a "
                 "place beside another fish",
      .words = WORDS("none", "heading", "averaged_heading", "course", "place"), .synonyms = "controller type",
-     .derived = "course with waypoints, else none", .derive = derive_fish, .follows = WORDS("fish.control.waypoints")},
+     .derived = "course with waypoints, else none", .derive = derive_control_law,
+     .follows = WORDS("fish.control.waypoints")},
     {"fish.control.bias", REAL, IN_FISH(control.bias), "0", ANY, "",
      .meaning = "law none: the steering bias; positive turns right", .synonyms = "phi0 offset"},
     {"fish.control.desired_heading", HEADING, IN_FISH(control.desired_heading), NULL, ANGLE, "degree",
      .meaning = "desired heading: a number, or a list of [time in s, angle] with linear interpolation",
-     .derived = "start.heading", .derive = derive_fish, .synonyms = "target h_des target_heading"},
+     .derived = "start.heading", .derive = derive_desired_heading, .synonyms = "target h_des target_heading"},
     {"fish.control.waypoints", PAIRS, IN_FISH(control.waypoints), "[]", ANY, "m",
      .meaning = "points to visit in order; the next point sets the desired heading", .synonyms = "route points"},
     {"fish.control.acceptance_radius", REAL, IN_FISH(control.acceptance_radius), "0.5", ABOVE(0), "",
@@ -559,7 +558,7 @@ const struct key case_table[] = {
      .meaning = "course, place: speed in body lengths per period below which the course has less weight"},
     {"fish.control.course_filter", DURATION, IN_FISH(control.course_filter), NULL, FROM(0), "s",
      .meaning = "course, place: time constant of the filter of the rate of change of the course; 0: no filter",
-     .derived = "a quarter of a period, 0.25/wave.frequency (0 for frequency 0)", .derive = derive_fish,
+     .derived = "a quarter of a period, 0.25/wave.frequency (0 for frequency 0)", .derive = derive_quarter_period,
      .cause = "fish.wave.frequency"},
     {"fish.control.limit", REAL, IN_FISH(control.limit), "0.5", ABOVE(0), "",
      .meaning = "maximum of the steering bias"},
@@ -567,18 +566,17 @@ const struct key case_table[] = {
      .meaning = "weight of the feedforward: the filtered moment of the flow; 0 with force: pressure", .published = "1"},
     {"fish.control.filter", DURATION, IN_FISH(control.filter), NULL, FROM(0), "s",
      .meaning = "time constant of the filter of feedforward; 0: the moment at the last event",
-     .derived = "one period, 1/wave.frequency (0 for frequency 0)", .derive = derive_fish,
+     .derived = "one period, 1/wave.frequency (0 for frequency 0)", .derive = derive_period,
      .cause = "fish.wave.frequency", .published = "0"},
     {"fish.control.rate", REAL, IN_FISH(control.rate), "2", ABOVE(0), "s-1",
      .meaning = "averaged_heading, course, place: maximum rate of change of the steering bias, and of the "
                 "relative amplitude with place"},
     {"fish.control.ramp", DURATION, IN_FISH(control.ramp), NULL, ABOVE(0), "s",
      .meaning = "duration of a change by a program (doc/python.md)",
-     .derived = "half a period, 0.5/wave.frequency (1 s for frequency 0)", .derive = derive_fish,
+     .derived = "half a period, 0.5/wave.frequency (1 s for frequency 0)", .derive = derive_control_ramp,
      .cause = "fish.wave.frequency"},
     {"fish.control.of", STRING, IN_FISH(control.of), NULL, FROM_TO(1, NAME_BYTES), "",
-     .meaning = "place: name of the leader", .derived = "none; needed with law place", .derive = derive_fish,
-     .synonyms = "leader follow"},
+     .meaning = "place: name of the leader", .derived = "none; needed with law place", .synonyms = "leader follow"},
     {"fish.control.offset", PAIR, IN_FISH(control.offset), "[0, 0]", ANY, "m",
      .meaning =
          "place: nose of the fish minus nose of the leader, for the leader's start.heading; turns with the leader",
@@ -715,39 +713,97 @@ void case_table_range(const struct key *key, struct text *range) {
     text_add_number(range, bounds->max);
 }
 
+enum key_state *case_table_state(const struct case_values *values, const struct key *key, int fish) {
+    return &values->state[(long)fish * case_table_n + (key - case_table)];
+}
+
+bool case_table_is_set(const struct case_values *values, const char *path, int fish) {
+    return *case_table_state(values, case_table_row(path), fish) != KEY_WITHOUT_VALUE;
+}
+
+/* Round a time to a multiple of a unit, up or to the nearest; false if the time is a multiple already, or has no value.
+ */
+static bool round_to_multiple(double *time, double unit, bool up) {
+    const double n = *time / unit, nearest = fmax(round(n), 1);
+    if (!(*time > 0) || fabs(n - nearest) <= 1e-9 * n) return false;
+    *time = (up ? ceil(n) : nearest) * unit;
+    return true;
+}
+
+/* Set the shedding interval. If the case gives no seconds for it, round the end of the run up to an event, and the
+ * output and checkpoint intervals to the nearest multiples. doc/model.md, section 7. */
+static void set_shedding_interval(struct case_values *values) {
+    double *const interval = &values->school.shedding_interval, *const rows = &values->time.output_interval,
+                  fastest = 0;
+    const struct key *const key = case_table_row("time.shedding_interval");
+    enum key_state *const state = case_table_state(values, key, 0);
+    if (*state == KEY_WITH_VALUE && !case_table_in_beats(values, key, 0)) return;
+
+    for (int i = 0; i < values->school.n_fish; i++)
+        fastest = fmax(fastest, fish_parameters_frequency(&values->school.fish[i]));
+    if (*state != KEY_WITH_VALUE) *interval = fastest > 0 ? 1 / (100 * fastest) : 0.01;
+    if (*state == KEY_WITHOUT_VALUE) *state = KEY_WITH_VALUE;
+    round_to_multiple(&values->time.end, *interval, true);
+    round_to_multiple(&values->time.checkpoint_interval, *interval, false);
+
+    // round the wake interval too if the output interval is rounded, or has its default
+    const bool is_given = case_table_is_set(values, "time.output_interval", 0);
+    const bool are_free = !is_given || round_to_multiple(rows, *interval, false);
+    if (are_free) round_to_multiple(&values->output.wake_interval, is_given ? *rows : 10 * *interval, false);
+}
+
+/* Set the default of a key that follows from another number, from a word, or by a function; false: there is none. */
+static bool set_default(const struct key *key, const struct key_place *at) {
+    if (key->derive) return key->derive(at);
+    if (key->multiple.of) {
+        const double *const other = case_table_field(case_table_row(key->multiple.of), at->values, at->fish);
+        return derive_number(at, key->multiple.factor * *other);
+    }
+    if (!key->choice.of) return false;
+    const struct key *const other = case_table_row(key->choice.of);
+    const int word = *(const int *)case_table_field(other, at->values, at->fish);
+    const bool is_word = strcmp(case_table_word(other, word), key->choice.word) == 0;
+    const double standard = is_word ? key->choice.with : key->choice.without;
+    return key->type == CHOICE ? derive_word(at, (int)standard) : derive_number(at, standard);
+}
+
 void case_table_derive(struct case_values *values, const char *origin) {
-    // times in beats; without a beat they are left unset, and refused by case_check
+    // times in beats; without a beat they have no value, and are refused by case_check
     for (int i = 0; i < values->n_beats; i++) {
         const struct case_beats *const beats = &values->beats[i];
         const double beat = case_table_beat(values, beats->key, beats->fish);
         double *const field = case_table_field(beats->key, values, &values->school.fish[beats->fish]);
-        if (beat > 0) *field = text_round(beats->n * beat);
+        if (!(beat > 0)) continue;
+        *field = text_round(beats->n * beat);
+        *case_table_state(values, beats->key, beats->fish) = KEY_WITH_VALUE;
     }
 
+    // other times are rounded to the shedding interval
+    set_shedding_interval(values);
+
     for (const struct key *key = case_table; key < case_table + case_table_n; key++) {
-        const char *const of = key->choice.of ? key->choice.of : key->multiple.of;
-        const struct key *const other = of ? case_table_row(of) : NULL;
         for (int i = 0; i < case_table_n_fields(key, values); i++) {
             struct fish_parameters *const fish = &values->school.fish[i];
-            if (key->derive) key->derive(&(struct key_place){values, fish, origin});
-            if (!other) continue;
-
-            // from another number or from a word
-            void *const field = case_table_field(key, values, fish);
-            const void *const from = case_table_field(other, values, fish);
-            double standard;
-            if (key->choice.of) {
-                const int word = *(const int *)from;
-                const bool is_word = word >= 0 && strcmp(case_table_word(other, word), key->choice.word) == 0;
-                standard = is_word ? key->choice.with : key->choice.without;
-            } else {
-                standard = key->multiple.factor * *(const double *)from;
-            }
-            if (key->type != CHOICE) {
-                set_default(field, standard);
-            } else if (*(const int *)field < 0) {
-                *(int *)field = (int)standard;
-            }
+            const struct key_place at = {values, origin, i, fish, case_table_field(key, values, fish)};
+            enum key_state *const state = case_table_state(values, key, i);
+            const bool has_default = *state != KEY_WITH_VALUE && set_default(key, &at);
+            if (has_default && *state == KEY_WITHOUT_VALUE) *state = KEY_WITH_VALUE;
         }
+    }
+
+    for (int f = 0; f < values->school.n_fish; f++) {
+        struct fish_parameters *const fish = &values->school.fish[f];
+
+        // a wavelength is another form of wave.number, which is shown in its place
+        enum key_state *const of_length = case_table_state(values, case_table_row("fish.wave.wavelength"), f);
+        if (*of_length == KEY_WITH_VALUE) {
+            fish->wave.number = -2 * M_PI / fish->wave.wavelength;
+            fish->wave.wavelength = 0;
+            *of_length = KEY_WITHOUT_VALUE;
+        }
+
+        // the model has its own factors of friction unless the case gives them
+        fish->drag.has_waving = case_table_is_set(values, "fish.drag.waving", f);
+        fish->drag.has_form = case_table_is_set(values, "fish.drag.form", f);
     }
 }

@@ -48,12 +48,14 @@ struct key_choice {
     double with, without;
 };
 
-/* The place of a default: a case with all values read, a fish of the case for a key of a fish, and the name of the file
- * with the case. */
+/* The place of a default: a case with all values read, its file, a fish of the case (the first for a key of no fish),
+ * and the field of the key. */
 struct key_place {
     struct case_values *values;
-    struct fish_parameters *fish;
     const char *origin;
+    int number;
+    struct fish_parameters *fish;
+    void *field;
 };
 
 struct key {
@@ -64,10 +66,10 @@ struct key {
     struct bounds bounds;
     const char *unit; /* "": none */
     const char *meaning;
-    const char *derived; /* the default of a field that was not read, in words; rows in order; one of: */
+    const char *derived; /* the default that follows from other keys, in words, and where it is set by one of: */
     struct key_multiple multiple;
     struct key_choice choice;
-    void (*derive)(const struct key_place *at); /* set the default */
+    bool (*derive)(const struct key_place *at); /* set the field; false: the key has no value in this case */
     const char *const *follows; /* paths of the keys that switch the model by the derived default, NULL at the end */
     const char *cause;          /* path of the key that can put the derived number out of its range; NULL: none */
     const char *published;      /* the default under preset: published; NULL: as without the preset */
@@ -93,7 +95,13 @@ bool case_table_is_value(const struct key *key);
 /* The number of fields of a key in a case: one for each fish, or one; 0 for a key without a field. */
 int case_table_n_fields(const struct key *key, const struct case_values *values);
 
-/* Set the derived defaults, row by row. origin: the name of the file with the case. */
+/* The place of the state of a key; fish is 0 unless the key is of a fish. */
+enum key_state *case_table_state(const struct case_values *values, const struct key *key, int fish);
+
+/* Whether the key at a path has a value. */
+bool case_table_is_set(const struct case_values *values, const char *path, int fish);
+
+/* Set the derived defaults of keys without a value, row by row. origin: the name of the file with the case. */
 void case_table_derive(struct case_values *values, const char *origin);
 
 /* What a beat is for a key, in s. A key of a fish counts the beats of this fish, a key of the case those of the slowest

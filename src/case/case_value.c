@@ -19,28 +19,6 @@ struct context {
     struct yaml_errors *errors;
 };
 
-void case_value_clear(const struct key *key, void *field) {
-    switch (key->type) {
-        case REAL:
-        case DURATION: *(double *)field = NAN; break;
-        case PAIR: ((double *)field)[0] = ((double *)field)[1] = NAN; break;
-        case INTEGER: *(int *)field = 0; break;
-        case CHOICE:
-        case METHOD: *(int *)field = -1; break;
-        case STRING: *(char **)field = NULL; break;
-        case NUMBERS:
-        case PAIRS:
-        case PROFILE:
-        case ROWS:
-        case HEADING: *(struct number_list *)field = (struct number_list){0}; break;
-        case FILES:
-        case DEFAULTS:
-        case AXES:
-        case EXPECTATIONS:
-        case ERRORS: break;
-    }
-}
-
 /* "fish[0].length: expects a number in m, got 'long'" */
 static void report_form(const struct context *context, const struct yaml_node *node, const char *form,
                         const char *unit) {
@@ -103,17 +81,16 @@ static bool read_fraction(const char *text, size_t length, double *number) {
 }
 
 /* A number of seconds, or of beats: '3 beats', '1/50 beat'. */
-static void read_duration(const struct context *context, const struct yaml_node *node, struct duration *duration) {
+static bool read_duration(const struct context *context, const struct yaml_node *node, struct duration *duration) {
     static const char form[] = "a number in s, or beats as in '20 beats' or '1/50 beat'";
     const char *const word = node->kind == YAML_SCALAR ? strchr(node->text, ' ') : NULL;
     double beats;
     struct context of_number = *context;
     of_number.unit = "";
-    *duration = (struct duration){NAN, NAN};
     if (!word || (strcmp(word, " beats") != 0 && strcmp(word, " beat") != 0) ||
         !read_fraction(node->text, (size_t)(word - node->text), &beats)) {
-        read_number(&of_number, node, form, true, &duration->seconds);
-        return;
+        duration->is_in_beats = false;
+        return read_number(&of_number, node, form, true, &duration->time);
     }
 
     char digits[TEXT_NUMBER_BYTES];
@@ -123,16 +100,17 @@ static void read_duration(const struct context *context, const struct yaml_node 
     struct key in_beats = *context->key;
     in_beats.unit = "beats";
     of_number.key = &in_beats;
-    read_number(&of_number, &number, form, true, &duration->beats);
+    duration->is_in_beats = true;
+    return read_number(&of_number, &number, form, true, &duration->time);
 }
 
 // ---- words and strings
 
-static void read_word(const struct context *context, const struct yaml_node *node, int *value) {
+static bool read_word(const struct context *context, const struct yaml_node *node, int *value) {
     for (int i = 0; node->kind == YAML_SCALAR && case_table_word(context->key, i); i++) {
         if (strcmp(case_table_word(context->key, i), node->text) == 0) {
             *value = i;
-            return;
+            return true;
         }
     }
 
@@ -141,9 +119,10 @@ static void read_word(const struct context *context, const struct yaml_node *nod
     case_table_range(context->key, &range);
     yaml_errors_add(context->errors, node->mark, "%s: expects one of %s; got %s", context->path,
                     range.text ? range.text : "", yaml_tree_describe(node, shown, sizeof shown));
+    return false;
 }
 
-static void read_string(const struct context *context, const struct yaml_node *node, char **value) {
+static bool read_string(const struct context *context, const struct yaml_node *node, char **value) {
     const char *const text = node->kind == YAML_SCALAR ? node->text : "";
 
     // refuse characters that end a line or move the cursor
@@ -159,7 +138,9 @@ static void read_string(const struct context *context, const struct yaml_node *n
                         (int)context->key->bounds.max);
     } else {
         *value = arena_text(context->arena, "%s", text);
+        return true;
     }
+    return false;
 }
 
 // ---- pairs and lists
@@ -181,23 +162,26 @@ static bool read_row(const struct context *context, const struct yaml_node *node
 
 /* Read a list of numbers, of pairs, or of rows as long as the first. A heading may be one number: (0, angle); a profile
  * has pairs if its first entry is a list. */
-static void read_list(const struct context *context, const struct yaml_node *node, struct number_list *list) {
+static bool read_list(const struct context *context, const struct yaml_node *node, struct number_list *list) {
     const enum key_type type = context->key->type;
     const bool is_list = node->kind == YAML_LIST;
     char form[80] = "a number in degree or a list of [time in s, angle in degree]";
     if (is_list && node->n == 0) {
-        if (type != HEADING) return;
+        if (type != HEADING) {
+            *list = (struct number_list){0};
+            return true;
+        }
         yaml_errors_add(context->errors, node->mark, "%s: expects at least one pair [time in s, angle in degree]",
                         context->path);
-        return;
+        return false;
     }
     if (!is_list && type == HEADING) {
         double angle;
-        if (!read_number(context, node, form, true, &angle)) return;
+        if (!read_number(context, node, form, true, &angle)) return false;
+        *list = (struct number_list){.n = 1};
         NEW(context->arena, list->value, 2);
         list->value[1] = angle;
-        list->n = 1;
-        return;
+        return true;
     }
 
     const struct yaml_node *const first = is_list ? node->entry[0].value : node;
@@ -205,14 +189,14 @@ static void read_list(const struct context *context, const struct yaml_node *nod
         char shown[64];
         yaml_errors_add(context->errors, first->mark, "%s: expects a %s, got %s", context->path,
                         case_table_type(context->key), yaml_tree_describe(first, shown, sizeof shown));
-        return;
+        return false;
     }
 
     const bool are_numbers = type == NUMBERS || (type == PROFILE && first->kind != YAML_LIST);
     const int width = are_numbers ? 1 : type == ROWS ? first->n : 2;
     if (node->n > MAX_VALUES / (type == ROWS ? width : 1)) {
         yaml_errors_add(context->errors, node->mark, "%s: more than %d values", context->path, MAX_VALUES);
-        return;
+        return false;
     }
 
     const char *of_number = form;
@@ -235,37 +219,41 @@ static void read_list(const struct context *context, const struct yaml_node *nod
     }
     const bool has_width = type == ROWS || (type == PROFILE && !are_numbers);
     if (is_good) *list = (struct number_list){node->n, value, has_width ? width : 0};
+    return is_good;
 }
 
-void case_value_read(struct arena *arena, const struct key *key, void *field, const struct yaml_node *node,
+bool case_value_read(struct arena *arena, const struct key *key, void *field, const struct yaml_node *node,
                      const char *path, struct yaml_errors *errors) {
     const struct context context = {arena, key, path, key->type == HEADING ? "" : key->unit, errors};
     static const char of_pair[] = "two numbers [x, y]";
     double number[2];
 
     switch (key->type) {
-        case REAL: read_number(&context, node, "a number", true, field); break;
-        case DURATION: read_duration(&context, node, field); break;
+        case REAL: return read_number(&context, node, "a number", true, field);
+        case DURATION: return read_duration(&context, node, field);
         case INTEGER:
-            if (read_number(&context, node, "an integer", true, number)) *(int *)field = (int)number[0];
-            break;
+            if (!read_number(&context, node, "an integer", true, number)) return false;
+            *(int *)field = (int)number[0];
+            return true;
         case CHOICE:
-        case METHOD: read_word(&context, node, field); break;
-        case STRING: read_string(&context, node, field); break;
+        case METHOD: return read_word(&context, node, field);
+        case STRING: return read_string(&context, node, field);
         case PAIR:
-            if (read_row(&context, node, of_pair, of_pair, 2, number)) memcpy(field, number, sizeof number);
-            break;
+            if (!read_row(&context, node, of_pair, of_pair, 2, number)) return false;
+            memcpy(field, number, sizeof number);
+            return true;
         case NUMBERS:
         case PAIRS:
         case PROFILE:
         case ROWS:
-        case HEADING: read_list(&context, node, field); break;
+        case HEADING: return read_list(&context, node, field);
         case FILES:
         case DEFAULTS:
         case AXES:
         case EXPECTATIONS:
         case ERRORS: break;
     }
+    return false;
 }
 
 // ---- writing

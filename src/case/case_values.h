@@ -40,6 +40,10 @@ struct case_output {
 
 enum yes { NO, YES };
 
+/* Whether a key has a value, given, by default or derived. Without a value, its field is 0 or empty, and the model does
+ * without it. In a case with errors, a default may stand in for a value that cannot be read. */
+enum key_state { KEY_WITHOUT_VALUE, KEY_WITH_VALUE, KEY_MISREAD };
+
 /* shoal steady */
 struct case_steady {
     double tolerance; /* change from beat to beat, relative */
@@ -72,6 +76,7 @@ struct case_values {
     struct case_solver solver;
     struct case_output output;
     struct case_steady steady;
+    enum key_state *state; /* of each key: case_table_state */
     int n_beats;
     struct case_beats *beats; /* (n_beats); the fields of these times are in seconds */
     int n_axes;

@@ -244,10 +244,9 @@ static void axis_read_values(struct axis *axis) {
             } field;
             char path[256];
             snprintf(path, sizeof path, "%s.values[%d] (%s)", axis->name, row, key->path);
-            case_value_clear(key, &field);
-            case_value_read(axis->errors->arena, key, &field, value, path, axis->errors);
+            const bool is_read = case_value_read(axis->errors->arena, key, &field, value, path, axis->errors);
             // beats are kept as a text
-            if (key->type == DURATION && !isnan(field.duration.beats)) axis->into->key[k].is_number = false;
+            if (is_read && key->type == DURATION && field.duration.is_in_beats) axis->into->key[k].is_number = false;
         }
 
         struct text text = {.arena = arena};
@@ -406,7 +405,6 @@ static void axis_read(struct axis *axis) {
                                                                                      axis->node, "reference");
     char path[64];
     snprintf(path, sizeof path, "%s.expect", axis->name);
-    into->order = into->within = NAN;
     if (expect && !into->refine) yaml_errors_add(errors, expect->mark, "%s: has no effect without refine: true", path);
     if (expect && expect->kind != YAML_MAP) {
         yaml_errors_add(errors, expect->mark, "%s: expects {order: 2, within: 0.2}", path);

@@ -31,7 +31,7 @@ struct sweep_axis {
     bool *is_against;     /* run the case of error.against; NULL: no value does                            (n_values) */
     bool is_relative;     /* the results of all members are also divided by those of the members with one value: */
     int relative_to;      /* the number of that value */
-    double order, within; /* the expected order of convergence: order +- within; NaN: none */
+    double order, within; /* the expected order of convergence: order +- within; 0: none */
     uint64_t order_of;    /* bit q: of quantity q */
     double *reference;    /* see sweep_reference; NULL: none */
 };

@@ -178,7 +178,7 @@ static void read_against(const struct case_values *values, struct sweep_error *e
     struct text text = {.arena = values->arena};
     yaml_write_node(&text, node);
     error->against = text.text;
-    if (!isnan(error->within)) {
+    if (error->within > 0) {
         yaml_errors_add(errors, node->mark, "error.within: refines one case: remove within or against");
     }
     if (node->kind == YAML_MAP) {
@@ -308,7 +308,7 @@ static void read_inputs(const struct case_values *values, const struct yaml_node
                         of_uncertain);
         return;
     }
-    if (!isnan(error->within)) {
+    if (error->within > 0) {
         yaml_errors_add(errors, uncertain->mark, "%s: no refinement makes it smaller: remove within or uncertain",
                         of_uncertain);
     }
@@ -344,9 +344,9 @@ void sweep_error_read(struct case_values *values, const struct yaml_node *root, 
     yaml_tree_check_keys(map, "error", "of, within, keys, confirm, models, most, against, sensitivity, uncertain",
                          errors);
     struct sweep_error *const error = NEW(values->arena, values->error, 1);
-    error->within = yaml_tree_positive(map, "error", "within", NAN, errors);
+    if (yaml_tree_find(map, "within")) error->within = yaml_tree_positive(map, "error", "within", 0, errors);
     error->most = yaml_tree_positive(map, "error", "most", SWEEP_ERROR_MOST, errors);
-    if (values->n_axes > 0 && !isnan(error->within)) {
+    if (values->n_axes > 0 && error->within > 0) {
         yaml_errors_add(errors, map->mark, "error.within: refines one case: remove within or sweep");
     }
     for (int a = 0; a < values->n_axes; a++) {
@@ -370,7 +370,7 @@ void sweep_error_read(struct case_values *values, const struct yaml_node *root, 
     if (error->sensitivity && values->n_axes > 0) {
         yaml_errors_add(errors, map->mark, "error.sensitivity: is that of one case: remove sensitivity or sweep");
     }
-    if (error->sensitivity && (keys || error->models || !isnan(error->within))) {
+    if (error->sensitivity && (keys || error->models || error->within > 0)) {
         yaml_errors_add(errors, map->mark,
                         "error.sensitivity: replaces the numerical keys: remove it, or keys, models and within");
     }
@@ -402,7 +402,7 @@ void sweep_error_write(struct text *text, const struct sweep_error *error) {
     }
 
     text_add(text, "]");
-    if (!isnan(error->within)) {
+    if (error->within > 0) {
         text_add(text, ", within: ");
         text_add_number(text, error->within);
     }

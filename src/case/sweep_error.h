@@ -87,7 +87,7 @@ struct sweep_error_input {
 struct sweep_error {
     int n_of;
     char **of;     /* names of quantities of a result or of a steady state     (n_of) */
-    double within; /* refine until the error is below this part of the value; NaN: do not refine */
+    double within; /* refine until the error is below this part of the value; 0: do not refine */
     double most;   /* refine to members of at most this many times the cost of the case */
     bool confirm;  /* with a finer level of each key */
     bool models;   /* with all choices of the model */

@@ -96,18 +96,18 @@ static void read_where(const struct reading *reading, const struct yaml_node *li
 
 // ---- quantities and bounds
 
-/* Read a number of the expectation; NaN if absent. */
-static double expect_read_number(const struct reading *reading, const char *name, double min) {
+/* Read a bound of the expectation, at least min; if it is absent, `none`. */
+static double expect_read_bound(const struct reading *reading, const char *name, double min, double none) {
     const struct yaml_node *const node = yaml_tree_find(reading->node, name);
     double number;
-    if (!node) return NAN;
+    if (!node) return none;
     if (node->kind == YAML_SCALAR && text_number(node->text, &number) && isfinite(number) && number >= min)
         return number;
     yaml_errors_add(reading->errors, node->mark, "%s.%s: expects a number%s", reading->name, name,
                     min == 0   ? " from 0 on"
                     : min == 1 ? " from 1 on"
                                : "");
-    return NAN;
+    return none;
 }
 
 /* Read the quantities, the fish and the bounds. */
@@ -125,10 +125,10 @@ static void read_bounds(const struct reading *reading) {
     }
 
     if (of) into->of = sweep_quantities_read(of, reading->name, SWEEP_N_QUANTITIES, reading->errors);
-    into->min = expect_read_number(reading, "least", -INFINITY);
-    into->max = expect_read_number(reading, "most", -INFINITY);
-    into->spread = expect_read_number(reading, "spread", 0);
-    into->ratio = expect_read_number(reading, "ratio", 1);
+    into->min = expect_read_bound(reading, "least", -INFINITY, -INFINITY);
+    into->max = expect_read_bound(reading, "most", -INFINITY, INFINITY);
+    into->spread = expect_read_bound(reading, "spread", 0, INFINITY);
+    into->ratio = expect_read_bound(reading, "ratio", 1, INFINITY);
     const bool has_bound = yaml_tree_find(reading->node, "least") || yaml_tree_find(reading->node, "most") ||
                            yaml_tree_find(reading->node, "spread") || yaml_tree_find(reading->node, "ratio");
 
@@ -145,7 +145,7 @@ static void read_bounds(const struct reading *reading) {
             yaml_errors_add(reading->errors, reading->node->mark, "%s.fish: %s has no value for each fish",
                             reading->name, quantity->name);
         }
-        if (quantity->of_xy && !(isnan(into->min) && isnan(into->max) && isnan(into->ratio))) {
+        if (quantity->of_xy && !(isinf(into->min) && isinf(into->max) && isinf(into->ratio))) {
             yaml_errors_add(reading->errors, reading->node->mark, "%s: %s is a point, of which only spread is known",
                             reading->name, quantity->name);
         }

@@ -22,7 +22,7 @@ struct sweep_expectation {
     int fish;    /* -1: of all */
     int n_where;
     struct sweep_condition *where; /* one of each key must hold                (n_where) */
-    double min, max;               /* of each value; NaN: no bound, as below */
+    double min, max;               /* of each value; without a bound infinite, as below */
     double spread;                 /* of the values; for points, the diagonal of the bounding box */
     double ratio; /* of the largest to the smallest absolute value; values of both signs, or 0, have none */
 };

@@ -487,7 +487,7 @@ double yaml_tree_positive(const struct yaml_node *map, const char *path, const c
         return number;
     }
     yaml_errors_add(errors, node ? node->mark : map->mark, "%s.%s: expects a number above 0", path, key);
-    return NAN;
+    return standard;
 }
 
 // ---- writing

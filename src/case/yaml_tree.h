@@ -113,7 +113,7 @@ void yaml_tree_check_keys(const struct yaml_node *map, const char *path, const c
 bool yaml_tree_boolean(const struct yaml_node *node, const char *path, struct yaml_errors *errors);
 
 /* The number above 0 under a key of a map; path: path of the map. Without the key it is the standard, or an error if
- * the standard is 0. After an error the result is NaN. */
+ * the standard is 0. After an error it is the standard. */
 double yaml_tree_positive(const struct yaml_node *map, const char *path, const char *key, double standard,
                           struct yaml_errors *errors);
 

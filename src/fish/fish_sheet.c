@@ -232,7 +232,5 @@ int fish_sheet_least(const struct fish_parameters *from) {
         depth = k == 0 ? value : fmin(depth, value);
     }
 
-    const double least = ceil(1 + 5 * from->length / depth * (1 - 1e-9));
-    // NaN: the depth was not read
-    return isnan(least) ? 0 : (int)fmin(least, 1e9);
+    return (int)fmin(ceil(1 + 5 * from->length / depth * (1 - 1e-9)), 1e9);
 }

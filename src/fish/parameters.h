@@ -173,9 +173,9 @@ struct fish_parameters {
     struct control_parameters control;
 };
 
-/* Whether a prescribed motion sets the beat; a choice that is not made yet is negative. */
+/* Whether a prescribed motion sets the beat. */
 static inline bool fish_parameters_move(const struct fish_parameters *fish) {
-    return (int)fish->motion.prescribed > PRESCRIBED_NONE && fish->motion.frequency > 0;
+    return fish->motion.prescribed != PRESCRIBED_NONE && fish->motion.frequency > 0;
 }
 
 /* The frequency of the beat, that is of the prescribed motion or else of the wave of the muscle, Hz; 0: no beat. */

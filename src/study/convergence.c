@@ -690,7 +690,7 @@ void convergence_study_judge(struct error_study *study, const struct member_file
     study->cost = cost_of(study, members, study->stated) / cost_of(study, members, study->base);
     const double within = study->study->error->within;
     const int worst = find_worst(study);
-    study->is_reached = isnan(within) || relative(study, worst, study->error[worst]) <= within;
+    study->is_reached = !(within > 0) || relative(study, worst, study->error[worst]) <= within;
 }
 
 void convergence_sweep_judge(struct error_sweep *sweep, const struct member_file *members) {

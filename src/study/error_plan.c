@@ -470,7 +470,7 @@ static bool is_used_input(const struct error_study *study, const struct sweep_er
     const struct fish_parameters *const fish = &values->school.fish[row->name ? row->fish : 0];
     const char *const path = row->path;
     const bool is_held = fish->motion.prescribed != PRESCRIBED_NONE;
-    if (!(fabs(value) > 0) || !isfinite(value)) return false;
+    if (!(fabs(value) > 0)) return false;
     if (row->switch_path && (int)plan_number_of(values, row->switch_path, 0) != row->switch_value) return false;
     if (strcmp(path, "fish.drag.waving") == 0 && !(value > 1)) return false;
     if (strcmp(path, "fish.body.thickness") == 0 || strcmp(path, "fish.body.depth") == 0) {
@@ -491,14 +491,11 @@ static bool is_used_input(const struct error_study *study, const struct sweep_er
     return !(study->is_static && strncmp(path, "wake.", 5) == 0);
 }
 
-/* The value of an input; of a factor that follows from the body, that of the first fish of a school of one. */
-static double input_value(const struct error_study *study, const struct school *school,
-                          const struct sweep_error_key *row) {
-    const char *const path = row->path;
-    const double value = plan_number_of(study->values, path, row->name ? row->fish : 0);
-    if (!isnan(value) || study->n_fish > 1) return value;
-    if (strcmp(path, "fish.drag.form") == 0) return school->fish->form;
-    return strcmp(path, "fish.drag.waving") == 0 ? school->fish->waving : value;
+/* The value of a key; of a factor of friction that the case does not give, the one that follows from the first body. */
+static double value_in_use(const struct error_study *study, const struct school *school, const char *path, int fish) {
+    const bool is_set = case_table_is_set(study->values, path, fish);
+    if (is_set) return plan_number_of(study->values, path, fish);
+    return strcmp(path, "fish.drag.form") == 0 ? school->fish->form : school->fish->waving;
 }
 
 /* Add the inputs that the case asks for, or all that it uses if it names none. */
@@ -509,7 +506,10 @@ static enum status choose_inputs(struct error_study *study, const struct school 
     for (int i = 0; i < (are_all ? SWEEP_N_INPUTS : error->n_inputs); i++) {
         const struct sweep_error_key *const row = are_all ? &sweep_inputs[i] : error->input[i].key;
         if (row->name && row->fish >= study->n_fish) continue;  // the other case has fewer fish
-        const double value = input_value(study, school, row);
+        // in a school, each fish has a factor of its own that follows from its body
+        const int fish = row->name ? row->fish : 0;
+        const bool is_one = study->n_fish == 1 || case_table_is_set(study->values, row->path, fish);
+        const double value = is_one ? value_in_use(study, school, row->path, fish) : 0;
         for (int c = 0; c < study->sweep->n_swept; c++) {
             if (strcmp(axis->key[c].row, row->path) != 0 || are_all) continue;
             return status_fail(STATUS_CASE, "error: %s is swept: its sensitivity is that of the points", row->path);
@@ -547,8 +547,7 @@ static enum status choose_keys(struct error_study *study, const struct school *s
         for (int k = 0; k < error->n_keys; k++) is_wanted |= error->levels[k].key == row;
         for (int c = 0; c < study->sweep->n_swept; c++) is_wanted &= strcmp(axis->key[c].row, row->path) != 0;
         const bool is_local = strcmp(row->path, "fish.nodes") == 0 || strcmp(row->path, "time.shedding_interval") == 0;
-        double value = plan_number_of(study->values, row->path, 0);
-        if (isnan(value)) value = strcmp(row->path, "fish.drag.form") == 0 ? school->fish->form : school->fish->waving;
+        const double value = value_in_use(study, school, row->path, 0);
         if (!is_wanted || !is_used(study, row, value) || !(study->is_full || is_local)) continue;
 
         struct error_study_key *const key = &study->key[study->n_keys++];

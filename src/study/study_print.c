@@ -337,7 +337,7 @@ static bool test_quantity(const struct case_values *study, const struct member_f
 
     const struct {
         const char *what, *word;
-        double value, bound; /* NaN: no bound */
+        double value, bound;
     } tests[] = {{"the smallest is", "least", min[0], one->min},
                  {"the largest is", "most", max[0], one->max},
                  {"the spread is", "most", hypot(width, height), one->spread},
@@ -345,7 +345,7 @@ static bool test_quantity(const struct case_values *study, const struct member_f
     bool are_met = true;
     for (int t = 0; t < 4; t++) {
         const double value = tests[t].value, bound = tests[t].bound;
-        if (isnan(bound)) continue;
+        if (isinf(bound)) continue;
         const bool is_met = t == 0 ? value >= bound : value <= bound;
         fprintf(stream, "  %-8s %s %.9g, expected at %s %.9g\n", is_met ? "met" : "MISSED", tests[t].what, value,
                 tests[t].word, bound);
@@ -613,7 +613,7 @@ enum status study_print_plan(const struct error_sweep *sweep, int n_processes, c
             "often within a factor of two\n",
             n, all, simultaneous, n_processes);
     const struct sweep_error *const error = sweep->study.error;
-    if (!isnan(error->within)) {
+    if (error->within > 0) {
         fprintf(stream,
                 "then refined until the errors are below %.3g %% of the values, up to %g times the time of the "
                 "case\n",

@@ -330,6 +330,16 @@ TEST(errors_of_all_stages_are_listed_together) {
     assert_non_null(strstr(status_message(), "fish[1].nodes: must be from 4"));
 }
 
+TEST(what_stands_in_for_a_value_with_an_error_causes_no_error) {
+    // the points are too few for the default number of nodes, and the table for the default profile
+    is_refused(
+        "format: 1\ntime: {end: 1}\nfish: [{nodes: x, sheet_points: 12, body: {profile: x, depth_table: [1]}}]\n",
+        "fish[0].nodes: expects an integer");
+    assert_non_null(strstr(status_message(), "fish[0].body.profile: expects one of"));
+    assert_null(strstr(status_message(), "fish[0].sheet_points"));
+    assert_null(strstr(status_message(), "fish[0].body.depth_table"));
+}
+
 TEST(characters_that_end_a_line_are_refused_in_strings) {
     // next line, line separator, paragraph separator, escape, delete
     static const char *const escapes[] = {"N", "L", "P", "e", "x7F"};
