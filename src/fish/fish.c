@@ -27,6 +27,13 @@ struct direction fish_direction(const struct fish *fish, const struct tangent *t
     return fish_direction_of(e);
 }
 
+const struct fish *fish_first_beating(const struct school *school) {
+    for (int f = 0; f < school->n_fish; f++) {
+        if (school->fish[f].period > 0) return &school->fish[f];
+    }
+    return NULL;
+}
+
 bool fish_has_wave(const struct fish *fish) {
     bool has = fish->n_harmonics > 0;
     for (int j = 0; j < fish->n_joints; j++) has |= fabs(fish->wave_amplitude[j]) > 0;

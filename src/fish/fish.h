@@ -286,6 +286,9 @@ static inline bool fish_is_loaded_by_sheet(const struct fish *fish) {
 /* Whether the muscle drives the body with a wave. */
 bool fish_has_wave(const struct fish *fish);
 
+/* The first fish that beats; NULL: none. */
+const struct fish *fish_first_beating(const struct school *school);
+
 /* The beat frequency, or the frequency of the prescribed motion; without a frequency, the speed of the fish or of the
  * stream in lengths per second; 1 without motion. Rate times length is the velocity scale. */
 double fish_rate(const struct school *school, const struct fish *fish);

@@ -17,16 +17,8 @@ enum steady_freedom steady_map_freedom(const struct fish *fish) {
     return fish->motion.is_held ? STEADY_HELD : STEADY_SURGES;
 }
 
-/* The first fish that beats; NULL: none. */
-static const struct fish *first_beating(const struct school *school) {
-    for (int f = 0; f < school->n_fish; f++) {
-        if (school->fish[f].period > 0) return &school->fish[f];
-    }
-    return NULL;
-}
-
 enum status steady_map_refuse(const struct school *school) {
-    const struct fish *const first = first_beating(school);
+    const struct fish *const first = fish_first_beating(school);
     if (!first) return status_fail(STATUS_CASE, "no fish beats, so there is no beat to repeat");
 
     // the common beat period of all fish
@@ -67,7 +59,7 @@ enum status steady_map_create(struct steady_map *map, struct simulation *simulat
         map->steered = f;
     }
     TRY(steady_map_refuse(school));
-    map->period = first_beating(school)->period;
+    map->period = fish_first_beating(school)->period;
     map->events = lround(map->period / school->interval);
     return STATUS_OK;
 }

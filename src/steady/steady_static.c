@@ -19,10 +19,7 @@
 #include "steady/steady_start.h"
 
 bool steady_static_applies(const struct school *school) {
-    for (int f = 0; f < school->n_fish; f++) {
-        if (school->fish[f].period > 0) return false;
-    }
-    return true;
+    return !fish_first_beating(school);
 }
 
 // ---- cases without an equilibrium

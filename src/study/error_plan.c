@@ -796,9 +796,8 @@ static enum status create_points(struct error_sweep *sweep, char ***swept, const
 static enum status plan_keys(struct error_study *point) {
     struct school *school;
     TRY(fish_school_create(point->sweep->arena, &school, &point->values->school));
-    for (int f = point->n_fish - 1; f >= 0; f--) {
-        if (school->fish[f].period > 0) point->beat = school->fish[f].period;
-    }
+    const struct fish *const beating = fish_first_beating(school);
+    point->beat = beating ? beating->period : 0;
     point->is_static = steady_static_applies(school);
     enum status status = choose_quantities(point);
     point->is_static &= point->is_steady;

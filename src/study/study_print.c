@@ -543,14 +543,14 @@ static enum status estimate_member(const struct error_sweep *sweep, int m, doubl
     struct simulation *simulation;
     struct estimate estimate;
     TRY(study_folder_case(scratch, &values, &sweep->study, m));
-    if (first->is_steady && first->beat > 0) {
+    enum status status = simulate_start(scratch, &simulation, values, NULL);
+    if (status == STATUS_OK && first->is_steady && first->beat > 0) {
         const bool has_before = sweep_member_before(&sweep->study, m) >= 0;
         double beats = has_before ? beats_from_neighbour : beats_from_start;
         if (m < sweep->n_points && values->steady.multipliers != NO) beats += beats_of_multipliers * first->n_fish;
-        values->time.end = beats * first->beat;
+        const struct school *const school = simulation->school;
+        simulation->n_events = lround(beats * fish_first_beating(school)->period / school->interval);
     }
-
-    enum status status = simulate_start(scratch, &simulation, values, NULL);
     if (status == STATUS_OK) status = estimate_run(simulation, seconds, &estimate);
     *duration = status == STATUS_OK ? estimate.seconds : NAN;
     arena_free(scratch);
