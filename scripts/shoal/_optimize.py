@@ -12,7 +12,7 @@ from typing import Mapping
 import numpy as np
 
 from ._library import CaseError, Error, FileError, SolverError, kind, number_of
-from ._program import _path, _shows, error, steady
+from ._program import _path, _shows, error, keys, steady
 from ._run import strings_of
 
 FACTOR = 2.0  # a number without bounds stays within this factor of its start
@@ -55,9 +55,10 @@ class Optimum:
 
     def plot(self):
         """The quantities and the numbers over the steady states of the search, as matplotlib axes."""
-        from ._plot_style import matplotlib  # noqa: F401 - says what is missing
+        from ._plot_style import matplotlib, unit_text  # noqa: F401 - says what is missing
         import matplotlib.pyplot as pyplot
 
+        units = {row["path"]: row["unit"] for row in keys()} | {row["name"]: row["unit"] for row in keys(output=True)}
         names = [self.quantity, *self._wanted, *self.values]
         figure, stack = pyplot.subplots(len(names), 1, sharex=True, squeeze=False, layout="constrained",
                                         figsize=(3.4, 0.6 + 0.9 * len(names)))
@@ -69,7 +70,8 @@ class Optimum:
                 axes.set_yscale("log")
             for bound in np.atleast_1d(np.asarray(self._wanted.get(name, []), dtype=float)):
                 axes.axhline(bound, color="#d55e00", lw=0.8, ls="--")
-            axes.set_ylabel(re.sub(r"^(fish\.\w+\.|steady_)", "", name).replace("_", "\n"), size=7)
+            words, unit = re.sub(r"^(fish\.\w+\.|steady_)", "", name).replace("_", " "), units.get(name, "1")
+            axes.set_ylabel(words if unit == "1" else f"{words}\n[{unit_text(unit)}]", size=7)
             axes.grid(lw=0.3, color="#dddddd")
         stack[-1, 0].set_xlabel("steady states")
         return stack[:, 0]
