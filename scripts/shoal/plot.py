@@ -78,8 +78,14 @@ class Snapshot:
         self.bodies.set_verts(outlines)
         for wall, (y, _) in zip(self.walls, self.results.walls):
             wall.move(self.place(np.array([[0, y]]), row)[0, 1])
-        for label, outline in zip(self.labels, outlines):
-            label.set_position((outline[:, 0].mean(), outline[:, 1].max() + 0.03 * np.ptp(outline, axis=0).max()))
+        # the name of a fish that swims below the others stands below it, so that the names of neighbours do not meet
+        heights = np.array([outline[:, 1].mean() for outline in outlines])
+        for label, outline, height in zip(self.labels, outlines, heights - heights.mean()):
+            length = np.ptp(outline, axis=0).max()
+            is_below = height < -0.1 * length
+            label.set_verticalalignment("top" if is_below else "bottom")
+            edge = outline[:, 1].min() - 0.03 * length if is_below else outline[:, 1].max() + 0.03 * length
+            label.set_position((outline[:, 0].mean(), edge))
         for f, path in enumerate(self.paths):
             path.set_data(*self.place(self.com[: row + 1, f], row).T)
         position, circulation = self.results.wake(row)
