@@ -906,7 +906,7 @@ TEST(other_models_bound_the_value) {
         const struct fish_parameters *const fish = &member.school.fish[0];
         assert_int_equal(fish->force, m == force->member[0] ? FORCE_REACTIVE : FORCE_PRESSURE);
         assert_int_equal(fish->drag.friction, FRICTION_BOUNDARY_LAYER);
-        assert_int_equal(isnan(fish->drag.form), m != form->member[0]);
+        assert_int_equal(case_table_is_set(&member, "fish.drag.form", 0), m == form->member[0]);
     }
 
     // the lowest and the highest value, of any choice
