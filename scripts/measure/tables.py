@@ -103,7 +103,7 @@ class Bench:
 
 def markdown(heads, rows):
     """A table in markdown."""
-    cells = [heads] + [[str(cell) for cell in row] for row in rows]
+    cells = [heads] + rows
     widths = [max(len(row[column]) for row in cells) for column in range(len(heads))]
     lines = ["| " + " | ".join(cell.rjust(width) for cell, width in zip(row, widths)) + " |" for row in cells]
     lines.insert(1, "|" + "|".join("-" * (width + 1) + ":" for width in widths) + "|")
@@ -198,6 +198,17 @@ def rows_of(lines):
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines[2:]]
 
 
+def measure(bench, name):
+    """The heads of a table, and the table in markdown."""
+    heads, rows = TABLES[name]
+    measured = []
+    for row in rows(bench):
+        measured.append([str(cell) for cell in row])
+        if bench.verbose:
+            print(f"{name}:", " | ".join(measured[-1]), file=sys.stderr, flush=True)
+    return heads, markdown(list(heads), measured)
+
+
 def compare(bench, path, is_write):
     """Measure the tables of a document below their commands, list rows that differ, and print the tables with numbers in
     the text; with is_write replace the tables. The number of tables that differ."""
@@ -224,8 +235,8 @@ def compare(bench, path, is_write):
         while at + 1 < len(lines) and (lines[at].startswith("|") or lines[at + 1].startswith("|")):
             at += 1
         print(f"{path}: {name}", file=sys.stderr)
-        heads, rows = TABLES[name]
-        now = markdown(list(heads), [list(row) for row in rows(bench)]).rstrip("\n").split("\n")
+        heads, text = measure(bench, name)
+        now = text.rstrip("\n").split("\n")
         shown, printed = rows_of(lines[begin:at]), rows_of(now)
         different = [pair for pair in zip_longest(shown, printed, fillvalue=[]) if not is_same_row(heads, *pair)]
         if different:
@@ -240,8 +251,7 @@ def compare(bench, path, is_write):
 
     for name in named:
         print(f"{path}: compare the numbers in the text with the table {name}")
-        heads, rows = TABLES[name]
-        print(markdown(list(heads), [list(row) for row in rows(bench)]))
+        print(measure(bench, name)[1])
     return n_different
 
 
@@ -255,7 +265,7 @@ def main(*documents, picture=None):
     if picture:
         parser.add_argument("--picture", metavar="FILE", help=picture.__doc__)
     parser.add_argument("--program", default=os.path.join(HERE, "build", "shoal"), help="default: build/shoal")
-    parser.add_argument("--verbose", action="store_true", help="show the commands")
+    parser.add_argument("--verbose", action="store_true", help="show the commands, and each row once it is measured")
     options = parser.parse_args()
     unknown = [name for name in options.names if name not in TABLES]
     if unknown:
@@ -270,8 +280,7 @@ def main(*documents, picture=None):
     bench, n_different = Bench(os.path.abspath(options.program), options.verbose), 0
     try:
         for name in options.names:
-            heads, rows = TABLES[name]
-            print(markdown(list(heads), [list(row) for row in rows(bench)]), end="")
+            print(measure(bench, name)[1], end="")
         if options.compare or options.write:
             n_different = sum(compare(bench, os.path.relpath(os.path.join(HERE, document)), options.write) for document in documents)
     finally:
