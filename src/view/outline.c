@@ -5,9 +5,9 @@
 
 #include "fish/shape.h"
 
-// the arc coordinate of a point of the curve: cosine points
-static double outline_part(int i) {
-    return (1 - cos(M_PI * i / (OUTLINE_POINTS - 1))) / 2;
+double outline_part(int i) {
+    const int along = i < OUTLINE_POINTS ? i : OUTLINE_SIDES - i;
+    return (1 - cos(M_PI * along / (OUTLINE_POINTS - 1))) / 2;
 }
 
 /* Half thickness at the points. Near a blunt nose the square of the thickness grows in proportion to the distance, as
@@ -86,10 +86,6 @@ struct outline outline_create(struct arena *arena, int n_nodes, const double *th
     NEW(arena, scratch, 3 * (n + 3));
     interpolate_half(&outline, thickness, is_mean, scratch, scratch + n + 3, scratch + 2 * (n + 3));
     return outline;
-}
-
-int outline_point(int i) {
-    return i < OUTLINE_POINTS ? i : OUTLINE_SIDES - i;
 }
 
 void outline_polygon(const struct outline *outline, const double *nodes, double *polygon) {

@@ -26,8 +26,9 @@ struct outline {
  * is_mean, else the sum of the half thicknesses at the two nodes (fish.body.section). */
 struct outline outline_create(struct arena *arena, int n_nodes, const double *thickness, bool is_mean);
 
-/* The coordinate along the curve of point i of the polygon, counted from the nose along the left side. */
-int outline_point(int i);
+/* Where along the curve point i of the polygon is, from 0 at the nose to 1 at the tail. The points are counted from the
+ * nose along the left side. */
+double outline_part(int i);
 
 /* The polygon [m] (OUTLINE_SIDES, 2) of a body whose nodes are at these positions [m] (n_nodes, 2). */
 void outline_polygon(const struct outline *outline, const double *nodes, double *polygon);

@@ -133,8 +133,7 @@ static void bodies_place(const struct export *export, struct bodies *bodies) {
 
         // points of the outline, at the arc coordinate of the point of the curve
         for (int i = 0; i < OUTLINE_SIDES; i++) {
-            const double part = (1 - cos(M_PI * outline_point(i) / (OUTLINE_POINTS - 1))) / 2;
-            const double s = part * sheet_arc[n_sheet - 1];
+            const double s = outline_part(i) * sheet_arc[n_sheet - 1];
             bodies->value[side] = value_at(sheet_arc, strength, n_sheet, s);
             bodies->pressure_at[side++] = n_jumps > 1 ? value_at(arc, jump, n_jumps, s) : NAN;
         }
