@@ -1,5 +1,6 @@
 #include "near.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 
 // ---- the tests of a program, in the order of their lines
@@ -80,7 +81,7 @@ void near_fail(const char *name, double got, const char *relation, double bound,
 
 void near_int(const char *name, const char *wanted, long long got, long long want, const char *file, int line) {
     if (got == want) return;
-    const int is_status = strncmp(wanted, "STATUS_", 7) == 0 || strncmp(wanted, "SHOAL_", 6) == 0;
+    const bool is_status = strncmp(wanted, "STATUS_", 7) == 0 || strncmp(wanted, "SHOAL_", 6) == 0;
     print_error("%s: got %lld, want %s, which is %lld%s%s\n", name, got, wanted, want, is_status ? ": " : "",
                 is_status ? status_message() : "");
     _fail(file, line);

@@ -43,7 +43,7 @@ static inline struct entry entry_of(struct shoal *run, const char *name) {
 }
 
 // numbers of the machine, numbers and errors of steps, and sums that are zero but for rounding
-static inline int is_left_out(const char *name) {
+static inline bool is_left_out(const char *name) {
     static const char *const names[] = {"wall_time",
                                         "steps",
                                         "residual_evaluations",

@@ -132,7 +132,7 @@ static inline struct result_file *create(struct fixture *f) {
     return result;
 }
 
-static inline enum status append(struct fixture *f, struct result_file *result, double t, int with_wake) {
+static inline enum status append(struct fixture *f, struct result_file *result, double t, bool with_wake) {
     f->state->t = t;
     return result_file_row(result, &(struct result_row){.school = f->school,
                                                         .state = f->state,

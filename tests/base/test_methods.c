@@ -67,7 +67,7 @@ TEST(runge_kutta_methods_have_a_tableau_for_each_kind_of_steps) {
     for (int i = 0; i < methods_n; i++) {
         const struct method_properties *const method = &methods_table[i];
         assert_true(method->has_fixed_steps || method->has_adaptive_steps);
-        const int is_runge_kutta = !method->is_implicit && i != METHOD_VERLET;
+        const bool is_runge_kutta = !method->is_implicit && i != METHOD_VERLET;
         assert_int_equal(method->fixed != NULL, is_runge_kutta && method->has_fixed_steps);
         assert_int_equal(method->adaptive != NULL, is_runge_kutta && method->has_adaptive_steps);
     }

@@ -126,7 +126,7 @@ TEST(the_locale_does_not_matter) {
     if (!found) skip();
     double number = 0;
     struct text text = {.arena = test_arena()};
-    const int is_number = text_number("2.5", &number);
+    const bool is_number = text_number("2.5", &number);
     text_add_number(&text, 0.5);
     setlocale(LC_NUMERIC, "C");
     assert_true(is_number);

@@ -217,7 +217,7 @@ static void whole_run(const char *cases, const char *name, int threads) {
 // ---- schools
 
 // rows a length apart, fish in a row three lengths, every second row shifted and in antiphase
-static char *school_text(int n_fish, int is_finite) {
+static char *school_text(int n_fish, bool is_finite) {
     const size_t size = 512 + 128 * (size_t)n_fish;
     char *const text = malloc(size);
     if (!text) abort();
@@ -247,7 +247,7 @@ struct school_run {
 };
 
 // bring a school to wakes of a whole lifetime
-static void school_begin(struct school_run *run, int n_fish, int is_finite, int threads) {
+static void school_begin(struct school_run *run, int n_fish, bool is_finite, int threads) {
     const double before = memory();
     char *const text = school_text(n_fish, is_finite);
     read_case(&run->values, text, threads);
@@ -300,7 +300,7 @@ static void school_end(struct school_run *run, int n_fish, int threads) {
     case_free(&run->values);
 }
 
-static void schools(int threads, int n, const int *n_fish, int is_finite) {
+static void schools(int threads, int n, const int *n_fish, bool is_finite) {
     struct school_run *const run = calloc((size_t)n, sizeof *run);
     if (!run) abort();
     for (int i = 0; i < n; i++) school_begin(&run[i], n_fish[i], is_finite, threads);
@@ -325,7 +325,7 @@ static void schools(int threads, int n, const int *n_fish, int is_finite) {
 int main(int argc, char **argv) {
     enum { MOST = 16 };
     int n_fish[MOST] = {1, 4, 16, 64, 256, 1024}, n = 6, threads = 2;
-    const int is_finite = argc > 2 && strcmp(argv[2], "--finite-schools") == 0;
+    const bool is_finite = argc > 2 && strcmp(argv[2], "--finite-schools") == 0;
     if (argc < 2 || argc == 4 || argc > 4 + MOST || (argc > 2 && !is_finite && strcmp(argv[2], "--schools") != 0)) {
         fputs("usage: phases CASES [--schools|--finite-schools [THREADS N...]]\n", stderr);
         return 2;

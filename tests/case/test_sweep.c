@@ -142,7 +142,8 @@ TEST(an_expectation_is_about_the_members_with_its_values) {
     NEAR(s.expect[0].ratio, 3, 0, 0);
     assert_true(isinf(s.expect[0].spread));
     // members: (ida 1e-3, 1), (.., 2), (rk4 1e-4, 1), (.., 2), (ida 1e-4, 1), (.., 2)
-    static const int are_meant[4][6] = {{1, 1, 1, 1, 1, 1}, {0, 0, 0, 1, 0, 1}, {1, 1, 0, 0, 1, 1}, {0, 1, 0, 0, 0, 0}};
+    static const bool are_meant[4][6] = {
+        {1, 1, 1, 1, 1, 1}, {0, 0, 0, 1, 0, 1}, {1, 1, 0, 0, 1, 1}, {0, 1, 0, 0, 0, 0}};
     for (int i = 0; i < 4; i++) {
         for (int m = 0; m < 6; m++) assert_int_equal(sweep_expects_of(&s, &s.expect[i], m), are_meant[i][m]);
     }

@@ -13,6 +13,7 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -74,7 +75,7 @@ __attribute__((destructor)) static void report(void) {
 }
 
 // make a call; of a call that is cut in two, the third argument is the size
-static long make(enum call call, int is_ours, long system, long a, long b, long c, long d) {
+static long make(enum call call, bool is_ours, long system, long a, long b, long c, long d) {
     const enum fate fate = is_ours ? fate_of(call) : PASS;
     if (fate == FAIL) return -1;
     const long value = syscall(system, a, b, fate == HALF ? (c + 1) / 2 : c, d, 0);
@@ -121,7 +122,7 @@ static int open_any(const char *path, int flags, mode_t mode) {
     const int ours = matches(path), is_new = ours && lstat(path, &facts) != 0;
     const int file = (int)make(OPEN, ours, SYS_openat, AT_FDCWD, (long)path, flags, mode);
     if (file < 0 || file >= MAX_FILES) return file;
-    const int is_folder = fstat(file, &facts) == 0 && S_ISDIR(facts.st_mode);
+    const bool is_folder = fstat(file, &facts) == 0 && S_ISDIR(facts.st_mode);
     kind_of[file] = (char)((ours ? OURS : 0) | (is_folder ? FOLDER : 0));
     if (ours && is_new) put((struct entry){.change = CREATED}, file, path, "", NULL);
     if (ours && !is_new && (flags & O_TRUNC)) put((struct entry){.change = TRUNCATED}, file, path, "", NULL);

@@ -11,6 +11,7 @@
 #include <link.h>
 #include <pthread.h>
 #include <stdatomic.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -51,7 +52,7 @@ __attribute__((destructor)) static void report(void) {
     fclose(file);
 }
 
-static int is_program(const void *caller) {
+static bool is_program(const void *caller) {
     return (uintptr_t)caller >= program_start && (uintptr_t)caller < program_end;
 }
 

@@ -293,7 +293,7 @@ TEST(gust_blows_across_the_stream) {
 TEST(a_wave_has_an_amplitude_a_frequency_and_a_free_body) {
     static const struct {
         const char *fish;
-        int has_wave;
+        bool has_wave;
     } cases[] = {{"", 1},
                  {"wave: {amplitude: 0}", 0},
                  {"wave: {frequency: 0}", 0},

@@ -16,7 +16,7 @@ enum { N_NODES = 7, N_SHEET = 13 };
 // the circulations of a sheet with g = cos(m theta): the trapezoidal rule halves the circulations at the ends
 static void cosine(int m, double *circulation) {
     for (int j = 0; j < N_SHEET; j++) {
-        const int is_end = j == 0 || j == N_SHEET - 1;
+        const bool is_end = j == 0 || j == N_SHEET - 1;
         circulation[j] = (is_end ? 0.5 : 1) * pi / (N_SHEET - 1) * cos(m * pi * j / (N_SHEET - 1));
     }
 }

@@ -153,7 +153,7 @@ static void add_wake(struct felt *felt, const struct setup *setup, int g, const 
     double older[2], newer[2];
 
     for (int i = 0; i < n; i++) {
-        const int is_last = i == n - 1;
+        const bool is_last = i == n - 1;
         wake_marker(wake, i, interval, tau, older);
         const double leg = is_last ? 0
                                    : (1 - q) * middle_leg(fish, wake, i, interval, 0) +
@@ -413,7 +413,8 @@ static void add_at_marker(struct felt *felt, const struct setup *setup, int f, i
                           double mirror) {
     const struct fish *const fish = &setup->school->fish[f], *const other = &setup->school->fish[g];
     const struct wake *const own = &setup->state->wake[f], *const wake = &setup->state->wake[g];
-    const int is_own = f == g && !(mirror < 0), newest = wake->n_vortex - 1;
+    const bool is_own = f == g && !(mirror < 0);
+    const int newest = wake->n_vortex - 1;
     const double factor = is_own ? 1 : 4, span = other->strip_depth / (is_own ? 4 : 2);
     const double one = fish->strip_depth * fish->strip_depth / 32, two = other->strip_depth * other->strip_depth / 32;
     const double leg = marker_leg(fish, own, m), square = fish->smoothing * fish->smoothing;
@@ -473,7 +474,8 @@ TEST_OF_KERNELS(markers_feel_all_bodies_all_markers_and_all_images) {
         const struct fish *const fish = &setup.school->fish[f];
         const struct wake *const wake = &now->wake[f];
         for (int m = 0; m < wake->n_vortex; m++) {
-            const int is_newborn = m == wake->n_vortex - 1, n = flow->wake_range[f].first + m, tail = fish->n_nodes - 1;
+            const bool is_newborn = m == wake->n_vortex - 1;
+            const int n = flow->wake_range[f].first + m, tail = fish->n_nodes - 1;
             const double at[2] = {is_newborn ? now->y[fish->at.x + tail] : wake->x[m],
                                   is_newborn ? now->y[fish->at.y + tail] : wake->y[m]};
             struct felt all = {0}, images = {0};

@@ -145,7 +145,7 @@ TEST(gradients_agree_with_differences) {
     const double half = 0.003, leg = 0.002, square = 0.0004, step = 1e-6, x = 0.37, y = -0.11;
     for (int k = 0; k < 2; k++) {
         const struct kernel_pair pair = k == 0 ? own : kernel_infinite.own(0, 0.0005);
-        const int has_legs = pair.kernel->has_legs;
+        const bool has_legs = pair.kernel->has_legs;
         const struct sum at = induce(&pair, &source, x, y, half, leg, square);
         static struct unit_values unit;
         struct source with_target = source;

@@ -77,7 +77,7 @@ struct sums {
     double value[SUMS][MOST];
 };
 
-static struct targets targets_of(const struct sources *rings, int with_gradient, struct sums *sums) {
+static struct targets targets_of(const struct sources *rings, bool with_gradient, struct sums *sums) {
     double *sum[SUMS];
     for (int i = 0; i < SUMS; i++) sum[i] = i < 3 || with_gradient ? sums->value[i] : NULL;
     memset(sums, 0, sizeof *sums);

@@ -489,7 +489,7 @@ TEST(a_strength_that_is_singular_at_the_tail_has_no_kink) {
     }
 
     for (int j = 0; j < fish->n_sheet; j++) {
-        const int is_end = j == 0 || j == fish->n_sheet - 1;
+        const bool is_end = j == 0 || j == fish->n_sheet - 1;
         y[fish->at.gamma + j] = (is_end ? 0.5 : 1) * h / fish->sheet_weight[j];
     }
 

@@ -63,7 +63,7 @@ static double potential_of(const struct fish *own, int c, const struct fish *fis
         const double r2 = r[0] * r[0] + r[1] * r[1], cross = r[0] * mirror.sign * piece->dx[1] - r[1] * piece->dx[0];
         double ring = 1;
         if (fish->strip_depth > 0) {
-            const int is_own = fish == own && m == 0;
+            const bool is_own = fish == own && m == 0;
             ring =
                 fish->strip_depth / (is_own ? 4 : 2) / sqrt(r2 + (is_own ? 1 : 4) * (own->point_half[c] + piece->half));
         }

@@ -41,7 +41,7 @@ static void repair(uint8_t *bytes, size_t n) {
     }
 }
 
-static int is_small(const struct school_parameters *school) {
+static bool is_small(const struct school_parameters *school) {
     int n = 0;
     for (int f = 0; f < school->n_fish; f++) n += school->fish[f].nodes + school->fish[f].sheet_points;
     return n < 200;

@@ -47,7 +47,7 @@ TEST(amplitude_and_bias_get_there_within_the_ramp) {
 }
 
 // the nose after a swim in which everything is set, three times within one ramp; or nothing
-static double led_swim(const char *solver, int is_led, long *steps) {
+static double led_swim(const char *solver, bool is_led, long *steps) {
     struct simulation *const simulation = school_simulation_of(
         "%ssolver: %s\nfish: [{nodes: 7, sheet_points: 13, pressure: {span: infinite}, control: {ramp: 0.2}, body: "
         "{modulus: 1.0e+5}}]\n",

@@ -259,7 +259,7 @@ static int count_missing(const struct entry *row, int n_rows, struct entry all[N
     int n_missing = 0;
     for (int r = 0; r < N_RUNS; r++) {
         for (int i = 0; i < n[r]; i++) {
-            int is_known = !(all[r][i].size > 0);
+            bool is_known = !(all[r][i].size > 0);
             for (int k = 0; k < n_rows && !is_known; k++) is_known = strcmp(row[k].name, all[r][i].name) == 0;
             for (int k = 0; k < r && !is_known; k++) {
                 for (int j = 0; j < n[k] && !is_known; j++) {
@@ -320,9 +320,9 @@ TEST(results_of_short_runs_stay) {
     double worst = 0;
     for (int i = 0; i < n; i++) {
         // multipliers and growth rates are quotients of small differences
-        const int is_difference = strstr(want[i].name, "multiplier") || strstr(want[i].name, "growth") ||
-                                  strstr(want[i].name, "exponent") || strstr(want[i].name, "mode") ||
-                                  strstr(want[i].name, "amplification");
+        const bool is_difference = strstr(want[i].name, "multiplier") || strstr(want[i].name, "growth") ||
+                                   strstr(want[i].name, "exponent") || strstr(want[i].name, "mode") ||
+                                   strstr(want[i].name, "amplification");
         const double off = fabs(got[i].sum - want[i].sum) / want[i].size;
         if (!is_difference) worst = fmax(worst, off);
         if (off <= (is_difference ? of_differences : tolerance)) continue;

@@ -243,14 +243,14 @@ TEST(a_run_that_fails_can_be_read_and_closed) {
 static void *fail_in_a_thread(void *message) {
     struct shoal *run;
     if (shoal_open(&run, "/no/such/thread.yaml", 0, NULL) != 0)
-        *(int *)message = strstr(shoal_message(), "thread") != NULL;
+        *(bool *)message = strstr(shoal_message(), "thread") != NULL;
     return NULL;
 }
 
 TEST(each_thread_has_its_own_message) {
     refusal("/no/such/case.yaml", NULL);
     pthread_t thread;
-    int has_message = 0;
+    bool has_message = false;
     assert_int_equal(pthread_create(&thread, NULL, fail_in_a_thread, &has_message), 0);
     assert_int_equal(pthread_join(thread, NULL), 0);
     assert_true(has_message);

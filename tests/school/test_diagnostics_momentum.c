@@ -195,7 +195,7 @@ TEST(a_wall_pushes_across_itself) {
 TEST(forces_without_a_reaction_have_no_balance) {
     static const struct {
         const char *text;
-        int has_impulse, has_external, has_balance;
+        bool has_impulse, has_external, has_balance;
     } cases[] = {
         {"fish: [{force: reactive, nodes: 9, start: {speed: 1}}]\n", 1, 0, 0},
         {"preset: published\nfish: [{}]\n", 1, 0, 0},

@@ -264,7 +264,7 @@ TEST(jacobian_agrees_with_differences_where_the_suction_ends) {
 }
 
 // The newest markers lie beside the bodies, ahead of their tails; in a channel, with a second fish.
-static void compare_overtaken(const char *keys, int with_legs) {
+static void compare_overtaken(const char *keys, bool with_legs) {
     struct setup setup =
         setup_with(TIME FAR
                    "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n"

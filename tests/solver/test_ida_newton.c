@@ -19,11 +19,12 @@ struct problem {
     double slope;       /* 1 / the Jacobian */
     double growth;      /* added to wrong at each solution */
     double coefficient; /* of the step */
-    int is_periodic, n_residuals, n_set_ups, n_bad, n_updates, never_finite;
+    bool is_periodic, is_traced;
+    int n_residuals, n_set_ups, n_bad, n_updates, never_finite;
     double updated;  /* how wrong the Jacobian is after an update; 0: there are none */
     long iterations; /* of the last solution */
     /* the record of a solution, while one is wanted, and the results of recorded solutions */
-    int is_traced, n_recorded, last_code;
+    int n_recorded, last_code;
     struct trace_attempt attempt;
 };
 
@@ -88,7 +89,7 @@ static void attempted(void *data, int code) {
     problem->last_code = code;
 }
 
-static struct problem *pose(double updated, int is_periodic) {
+static struct problem *pose(double updated, bool is_periodic) {
     struct problem *problem;
     NEW(test_arena(), problem, 1);
     *problem = (struct problem){.root = 1, .coefficient = 100, .updated = updated, .is_periodic = is_periodic};
@@ -137,7 +138,7 @@ static int solve(struct problem *problem, double tolerance, int evaluate) {
 }
 
 // a problem with the Jacobian of its first solution
-static struct problem *pose_and_solve(double updated, int is_periodic) {
+static struct problem *pose_and_solve(double updated, bool is_periodic) {
     struct problem *const problem = pose(updated, is_periodic);
     assert_int_equal(solve(problem, 1e-6, 1), 0);
     return problem;

@@ -36,7 +36,7 @@ TEST(rates_of_parabolas_are_exact_from_the_second_step_on) {
         set(&setup, times[n]);
         integrator_rates_step(rates, times[n], setup.state);
         for (int i = 0; i < setup.school->n_unknowns; i++) {
-            const int is_strength = i >= fish->at.gamma && i < fish->at.circulation;
+            const bool is_strength = i >= fish->at.gamma && i < fish->at.circulation;
             const double line = (parabola(i, times[1]) - parabola(i, 0)) / times[1];
             const double want = !is_strength ? -7 : n == 1 ? line : slope(i, times[n]);
             NEAR(setup.state->yp[i], want, 1e-11, 0);  // rounding of values of 60 over a step of 0.03

@@ -145,10 +145,10 @@ TEST(rates_of_quartics_are_exact_after_five_events_without_a_jump) {
             state_find_rates(setup.state, setup.school, shed_is_algebraic);
 
             for (int i = 0; i < setup.school->n_unknowns; i++) {
-                const int is_shed = i == fish[0].at.circulation || i == fish[1].at.circulation;
-                const int has_rate = (i >= fish->at.vx && i < fish->at.px) ||
-                                     (i >= fish->at.gamma && i < fish->at.circulation) ||
-                                     (is_shed && shed_is_algebraic);
+                const bool is_shed = i == fish[0].at.circulation || i == fish[1].at.circulation;
+                const bool has_rate = (i >= fish->at.vx && i < fish->at.px) ||
+                                      (i >= fish->at.gamma && i < fish->at.circulation) ||
+                                      (is_shed && shed_is_algebraic);
                 // the slope of the polynomial through all values since the jump, five at most: the sum of differences/k
                 const int most = n % 8 < 4 ? n % 8 : 4;
                 double value[5], slope = 0;
@@ -213,7 +213,7 @@ static int next_field(const char **body, char field[64]) {
     return 0;
 }
 
-static int has_row(const char *name) {
+static bool has_row(const char *name) {
     for (int i = 0; i < state_table_n; i++) {
         if (strcmp(state_table[i].name, name) == 0) return 1;
     }
@@ -235,7 +235,7 @@ static const struct {
 };
 enum { N_OWNERS = sizeof owners / sizeof *owners };
 
-static int is_owner(const char *field) {
+static bool is_owner(const char *field) {
     for (int i = 0; i < N_OWNERS; i++) {
         const size_t length = strlen(owners[i].prefix);
         if (length > 0 && strlen(field) + 1 == length && strncmp(field, owners[i].prefix, length - 1) == 0) return 1;

@@ -700,7 +700,7 @@ TEST(a_cusp_an_edge_and_a_sheet_are_objected_to) {
 }
 
 // the report of a study whose shedding interval has this share of the error and a reason for a flag
-static int is_flagged_with_share(double share) {
+static bool is_flagged_with_share(double share) {
     struct error_study study =
         open_study(UNIFORM, "{of: steady_speed, keys: {nodes: [13, 17], shedding_interval: [0.01, 0.02]}}");
     struct member_file *const members = make_members(&study);

@@ -161,7 +161,7 @@ TEST(a_study_nc_that_does_not_fit_is_refused) {
             craft_variable(path, name, how);
             struct case_values *again;
             struct member_file *read;
-            int is_read = strcmp(name, "status") == 0 && how != LONG_DIMENSION;
+            bool is_read = strcmp(name, "status") == 0 && how != LONG_DIMENSION;
             for (int q = 0; member_file_quantity(q) && how != MISSING; q++) {
                 is_read = is_read || strcmp(member_file_quantity(q)->name, name) == 0;
             }

@@ -109,7 +109,7 @@ static double street_speed(int n, double interval) {
     double sum = 0;
     for (int way = 0; way < 2; way++) {
         for (int i = 0; i < wake_n_sources(wake); i++) {
-            const int is_middle = fabs(wake->x[i] + (way ? 0.5 * end * tanh(pi * 0.280549) : 0)) < 0.99;
+            const bool is_middle = fabs(wake->x[i] + (way ? 0.5 * end * tanh(pi * 0.280549) : 0)) < 0.99;
             if (fabs(wake_source(wake, i)) > 0.5 && is_middle) sum += (way ? 1 : -1) * wake->x[i] / 4;
         }
         verify_run(simulation, end);

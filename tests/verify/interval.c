@@ -31,7 +31,7 @@ struct variant {
 
 // A free sheet acts on the own fish by the pressure. The own wake has no effect on a reactive fish, so only the
 // circulation depends on the interval.
-static int is_sheet(const struct variant *variant) {
+static bool is_sheet(const struct variant *variant) {
     return strcmp(variant->shedding, "sheet") == 0;
 }
 

@@ -15,7 +15,7 @@ struct plate {
     int nodes, n_sheet;
     double interval, end; /* s */
     double smoothing;     /* of the wake, L */
-    int is_uniform;       /* without taper: the body sees the same smoothing as all others */
+    bool is_uniform;      /* without taper: the body sees the same smoothing as all others */
     const char *motion;   /* further keys of the prescribed motion */
 };
 

@@ -280,7 +280,7 @@ static void start_of_a_run(void) {
 }
 
 /* The one-norm condition of the system with gamma_j, or with q_j, as unknowns. */
-static double condition(const struct probe *probe, int with_circulations) {
+static double condition(const struct probe *probe, bool with_circulations) {
     double *const weight = numbers(probe->n);
     for (int j = 0; j < probe->n; j++) weight[j] = with_circulations ? probe->fish->sheet_weight[j] : 1;
     const double product = norm(probe->n, probe->matrix, weight, 0) * norm(probe->n, probe->inverse, weight, 1);

@@ -67,7 +67,7 @@ static void add_wake(const struct wake *wake, double complex zeta, struct sums *
  * but not the bound sheet, its rate, or the sums of the program. */
 static void check_passing_vortex(void) {
     const double circulation = 0.3, place[] = {0.1, 0.5, 0.9}, times[] = {0.25, 0.5, 0.75};
-    const int is_fast = verify_is_fast();
+    const bool is_fast = verify_is_fast();
     struct simulation *const simulation = verify_open(
         "format: 1\ntime: {end: 1, shedding_interval: %g}\n"
         "fluid: {density: 1, viscosity: 0, velocity: [1, 0]}\n"
@@ -81,7 +81,7 @@ static void check_passing_vortex(void) {
         verify_run(simulation, times[i]);
         simulate_measure(simulation);
         for (int k = 0; k < 6; k++) {
-            const int is_right = k < 3;
+            const bool is_right = k < 3;
             const double angle = acos(2 * place[k % 3] - 1) * (is_right ? 1 : -1);
             const double complex zeta = cexp(I * angle);
             struct sums sums = {0, circulation / (2 * pi * I) / zeta + (1 - 1 / (zeta * zeta)) / 4};

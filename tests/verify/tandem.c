@@ -80,7 +80,7 @@ static double growth(struct steady_problem *problem, const struct state *kept) {
     return apart[1] / apart[0];
 }
 
-static struct found find(const struct pair *pair, int n_fish, int is_stability_wanted) {
+static struct found find(const struct pair *pair, int n_fish, bool is_stability_wanted) {
     struct verify_search search;
     struct found found = {.largest = NAN};
     struct steady_multipliers multipliers;

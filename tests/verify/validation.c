@@ -24,12 +24,12 @@ struct table {
 static void read_table(const char *path, struct table *table) {
     FILE *const file = fopen(path, "r");
     char line[LINE_BYTES];
-    int has_heading = 0;
+    bool has_heading = false;
     table->n = 0;
     while (file && fgets(line, sizeof line, file) && table->n < MOST_LINES) {
         if (line[0] == '#') continue;
         if (has_heading) memcpy(table->line[table->n++], line, sizeof line);
-        has_heading = 1;
+        has_heading = true;
     }
     if (file) fclose(file);
     verify_ok(table->n > 0 ? STATUS_OK : status_fail(STATUS_FILE, "%s: no data", path));
