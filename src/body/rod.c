@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "fish/fish_gait.h"
 #include "fish/fish_motion.h"
 
 // ---- from the unknowns of two nodes to the edge between these nodes

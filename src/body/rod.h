@@ -11,7 +11,7 @@
 
 #include "base/sparse.h"
 #include "fish/fish.h"
-#include "fish/fish_motion.h"
+#include "fish/fish_gait.h"
 
 /* Frame and motion of an edge of a body. doc/model.md, sections 2 and 9. */
 

@@ -7,7 +7,7 @@
 
 #include "base/sparse.h"
 #include "fish/fish.h"
-#include "fish/fish_motion.h"
+#include "fish/fish_gait.h"
 
 /* A value set from outside during a run: each change is a ramp to the new value with three continuous
  * derivatives, for any value and rate at the start of the change. doc/model.md, section 11. */

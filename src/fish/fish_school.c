@@ -8,6 +8,7 @@
 
 #include "base/mathematics.h"
 #include "fish/fish_body.h"
+#include "fish/fish_gait.h"
 #include "fish/fish_motion.h"
 #include "fish/fish_sheet.h"
 

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "base/mathematics.h"
-#include "fish/fish_motion.h"
+#include "fish/fish_gait.h"
 #include "fish/fish_school.h"
 
 static pthread_mutex_t netcdf_lock = PTHREAD_MUTEX_INITIALIZER;

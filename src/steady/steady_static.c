@@ -7,6 +7,7 @@
 
 #include "base/mathematics.h"
 #include "body/rod.h"
+#include "fish/fish_gait.h"
 #include "fish/fish_motion.h"
 #include "flow/flow.h"
 #include "flow/flow_external.h"

@@ -4,7 +4,7 @@
 
 #include "base/mathematics.h"
 #include "body/rod.h"
-#include "fish/fish_motion.h"
+#include "fish/fish_gait.h"
 #include "school.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"

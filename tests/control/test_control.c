@@ -1,6 +1,7 @@
 /* test_control.c: Tests the heading of a fish and every control law (doc/model.md, section 11). */
 #include "base/mathematics.h"
 #include "control/control.h"
+#include "fish/fish_gait.h"
 #include "fish/fish_motion.h"
 #include "near.h"
 #include "school.h"

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "fish/fish_motion.h"
+#include "fish/fish_gait.h"
 #include "library/handle.h"
 #include "school.h"
 

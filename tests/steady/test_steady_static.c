@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fish/fish_motion.h"
+#include "fish/fish_gait.h"
 #include "flow/flow_at_bodies.h"
 #include "school.h"
 #include "steady/steady_modes.h"
