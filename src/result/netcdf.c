@@ -77,9 +77,9 @@ enum status netcdf_create(struct netcdf_writer *writer, const char *path, const 
     struct tm utc;
     strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
     // no jump leaves the part of a file behind
-    const size_t length = strlen(date) + strlen(command) + 2;
+    const size_t length = strlen(date) + strlen(command ? command : "") + 2;
     char *const history = malloc(length);
-    if (history) snprintf(history, length, "%s %s", date, command);
+    if (history) snprintf(history, length, "%s%s%s", date, command ? " " : "", command ? command : "");
     if (!history) CALL(writer, ENOMEM);
     netcdf_write_string(writer, NETCDF_GLOBAL, "Conventions", "CF-1.10");
     netcdf_write_string(writer, NETCDF_GLOBAL, "title", title);

@@ -40,8 +40,8 @@ struct netcdf_variable {
 };
 
 /* Create a file in the classic format with 64-bit sizes (CDF-5), with the attributes Conventions, title, history (now,
- * and the command line) and source (this version and its libraries). Fails with STATUS_FILE or STATUS_MEMORY; no file
- * has then changed, and netcdf_finish does nothing. */
+ * and the command line, unless NULL) and source (this version and its libraries). Fails with STATUS_FILE or
+ * STATUS_MEMORY; no file has then changed, and netcdf_finish does nothing. */
 enum status netcdf_create(struct netcdf_writer *writer, const char *path, const char *title, const char *command);
 
 /* Continue an existing file of shoal behind the last row; the definitions are unchanged. Fails with

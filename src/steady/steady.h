@@ -41,7 +41,7 @@ struct steady_options {
     const struct steady_point *hold; /* hold these slow quantities until the wake has settled, instead of a search, and
                                         take the result for the steady state; NULL: search */
     struct steady_point *found;      /* gets the steady state; may be NULL */
-    const char *command;             /* command line, for the history attribute of the file */
+    const char *command;             /* command line, for the history attribute of the file; may be NULL */
     void (*progress)(const struct steady_progress *progress, void *data); /* may be NULL */
     void (*warn)(const char *line, void *data);                           /* may be NULL */
     void *data;

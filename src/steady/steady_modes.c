@@ -110,9 +110,14 @@ void steady_modes_of_multipliers(struct steady_values *found, double period) {
  * After a failure, such as an overlap of two fish, the increment is smaller by the factor shorter. */
 static const double disturbance = 0.04, smallest = 0.02, largest = 0.06, shorter = 0.25, least_disturbance = 1e-3;
 
-/* MEMORY: beats of the response of one fish, which is lost in the noise after two. MOST_MEMORY: with the beats in which
- * the wake of the first fish reaches the last one. SAMPLES: of the errors of the responses. */
+/* MEMORY: beats of the response of one fish, which is lost in the noise after two, unless a control law remembers more.
+ * MOST_MEMORY: with the beats in which the wake of the first fish reaches the last one. SAMPLES: of the errors of the
+ * responses. */
 enum { MEMORY = 3, MOST_MEMORY = 12, SAMPLES = 16 };
+
+/* With a control law the memory becomes longer by MEMORY if its last beat changes the largest multiplier by more than
+ * this, and by more than the noise does. */
+static const double forgotten = 0.01;
 
 /* Central differences have two sizes, the first of which is twice the second. */
 enum { SIZES = 2 };
@@ -202,13 +207,16 @@ static enum status find_responses(struct disturbances *all) {
 }
 
 /* Twice the root mean square deviation of the moduli under errors of random sign, and at least the effect of the last
- * beat of the memory. A multiplier below its error has decayed: 0. */
-static enum status find_errors(struct arena *arena, const struct disturbances *all, struct steady_multipliers *found) {
+ * beat of the memory. A multiplier below its error has decayed: 0. is_short: whether the memory, and not the noise,
+ * limits the largest multiplier. */
+static enum status find_errors(struct arena *arena, const struct disturbances *all, struct steady_multipliers *found,
+                               bool *is_short) {
     const int n = all->problem->n_unknowns, n_values = n * n * all->n_memory;
     double *real, *imaginary;
     uint64_t random = 1;
     NEW(arena, real, n);
     NEW(arena, imaginary, n);
+    memset(found->error, 0, (size_t)n * sizeof *found->error);
     for (int s = 0; s <= SAMPLES; s++) {
         for (int i = 0; i < n_values; i++) {
             random = random * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
@@ -219,6 +227,7 @@ static enum status find_errors(struct arena *arena, const struct disturbances *a
                                imaginary, NULL));
         for (int i = 0; i < n; i++) {
             const double away = fabs(hypot(real[i], imaginary[i]) - hypot(found->real[i], found->imaginary[i]));
+            if (is_shorter && i == 0) *is_short = away > larger(forgotten, sqrt(found->error[i]));
             found->error[i] =
                 is_shorter ? larger(sqrt(found->error[i]), away) : found->error[i] + 4 * away * away / SAMPLES;
         }
@@ -266,7 +275,9 @@ enum status steady_multipliers_find(struct arena *arena, struct steady_problem *
 
     // the wake of the first fish reaches the last one after so many beats
     double least = 0, most = 0;
+    bool has_law = false;
     for (int f = 0; f < simulation->school->n_fish; f++) {
+        has_law |= simulation->school->fish[f].control.law != CONTROL_NONE;
         double ahead;
         steady_map_read(&problem->map, 1, &(struct steady_unknown){f, STEADY_AHEAD}, &ahead);
         least = smaller(least, ahead);
@@ -276,18 +287,19 @@ enum status steady_multipliers_find(struct arena *arena, struct steady_problem *
     const double beats = (most - least) / way;
     all.size = fmin(largest, fmax(smallest, disturbance * way / simulation->school->fish[0].length));
     all.n_memory = MEMORY + (beats <= MOST_MEMORY - MEMORY ? (int)ceil(beats) : MOST_MEMORY - MEMORY);
+    const int n_seen = n * MOST_MEMORY, n_values = n * n_seen;
 
     NEW(scratch, all.start, n);
     NEW(scratch, all.to, n);
-    NEW(scratch, all.base, n * all.n_memory);
+    NEW(scratch, all.base, n_seen);
     NEW(scratch, all.sizes, n);
-    NEW(scratch, all.central, SIZES * n * n * all.n_memory);
-    NEW(scratch, all.second, SIZES * n * n * all.n_memory);
-    NEW(scratch, all.above, n * all.n_memory);
-    NEW(scratch, all.below, n * all.n_memory);
-    NEW(scratch, all.response, n * n * all.n_memory);
-    NEW(scratch, all.error, n * n * all.n_memory);
-    NEW(scratch, all.sample, n * n * all.n_memory);
+    NEW(scratch, all.central, SIZES * n_values);
+    NEW(scratch, all.second, SIZES * n_values);
+    NEW(scratch, all.above, n_seen);
+    NEW(scratch, all.below, n_seen);
+    NEW(scratch, all.response, n_values);
+    NEW(scratch, all.error, n_values);
+    NEW(scratch, all.sample, n_values);
     *found = (struct steady_multipliers){.n = n};
     NEW(arena, found->real, n);
     NEW(arena, found->imaginary, n);
@@ -304,11 +316,17 @@ enum status steady_multipliers_find(struct arena *arena, struct steady_problem *
 
     steady_map_save(scratch, simulation, &all.kept);
     steady_problem_read(problem, all.start);
-    enum status status = find_responses(&all);
-    if (status == STATUS_OK) {
-        status = newton_multipliers(scratch, n, all.n_memory, all.response, found->real, found->imaginary, found->mode);
+    enum status status = STATUS_OK;
+    for (bool is_short = true; status == STATUS_OK && is_short;) {
+        status = find_responses(&all);
+        if (status == STATUS_OK) {
+            status =
+                newton_multipliers(scratch, n, all.n_memory, all.response, found->real, found->imaginary, found->mode);
+        }
+        if (status == STATUS_OK) status = find_errors(scratch, &all, found, &is_short);
+        if (!has_law || all.n_memory + MEMORY > MOST_MEMORY) break;
+        if (is_short) all.n_memory += MEMORY;
     }
-    if (status == STATUS_OK) status = find_errors(scratch, &all, found);
     if (status == STATUS_OK) {
         // the change of the last undisturbed beat
         const double *const last = all.base + n * (all.n_memory - 1);

@@ -263,7 +263,10 @@ static enum status add_point(struct walk *walk, int at, const double *x, double 
                                           .stop = options->stop};
     TRY(case_at(walk, scratch, &values, point->value));
     enum status status = steady_run(values, &search);
-    if (status == STATUS_OK && !isfinite(found.real)) {
+    if (status == STATUS_OK && !isfinite(found.real) && branch->n_points > 0) {
+        status = status_fail(STATUS_SOLVER, "%s = %.6g: the state has no mode whose growth could be followed",
+                             options->key, point->value);
+    } else if (status == STATUS_OK && !isfinite(found.real)) {
         status = status_fail(STATUS_CASE,
                              "%s: nothing in this case can be unstable: with a beat, a fish must be free to swim; "
                              "without a beat, the modes need pressure.span: infinite, a stream, and shedding",

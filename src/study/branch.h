@@ -27,7 +27,7 @@ struct branch_options {
     const char *start;   /* steady state that the first search starts from; NULL: the start of the case */
     const char *folder;  /* of the files */
     bool force;          /* replace the branch of an earlier call */
-    const char *command; /* command line, for the history attribute of the files */
+    const char *command; /* command line, for the history attribute of the files; may be NULL */
     void (*progress)(const struct steady_progress *progress, void *data); /* may be NULL */
     void (*note)(const char *line, void *data);                           /* a line about each state; may be NULL */
     void (*warn)(const char *line, void *data);                           /* may be NULL */

@@ -69,7 +69,7 @@ fish:
 end
 run steady course.yaml --threshold 'fish[*].control.gain=2:6' --json -o course -q
 cp out course.json
-for gain in 3.3 3.8; do run run course.yaml -q -o "run$gain.nc" --set "fish[*].control.gain=$gain"; done
+for gain in 3.4 3.6; do run run course.yaml -q -o "run$gain.nc" --set "fish[*].control.gain=$gain"; done
 check runs_decay_and_grow_on_the_two_sides python "$root/tests/app/threshold_runs.py"
 
 # ---- the stable side of a branch ends at a fold: the follower falls back until its place is gone

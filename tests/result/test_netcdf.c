@@ -165,6 +165,22 @@ TEST_WITH(what_is_written_reads_back, set_up, tear_down) {
     close_file();
 }
 
+TEST_WITH(the_history_of_no_command_is_the_date, set_up, tear_down) {
+    const struct fixture *const f = *state;
+    struct netcdf_writer writer;
+    struct netcdf_reader reader;
+    char *history;
+    assert_int_equal(netcdf_create(&writer, f->path, "title of it", NULL), STATUS_OK);
+    netcdf_write_integer(&writer, NETCDF_GLOBAL, "shoal_schema", 1);
+    netcdf_end_definitions(&writer);
+    assert_int_equal(netcdf_publish(&writer, false), STATUS_OK);
+    assert_int_equal(netcdf_finish(&writer), STATUS_OK);
+    assert_int_equal(open_file(&reader, f->path), STATUS_OK);
+    assert_int_equal(netcdf_attribute(&reader, "history", &history), STATUS_OK);
+    assert_int_equal(strlen(history), strlen("2000-01-01T00:00:00Z"));
+    close_file();
+}
+
 TEST_WITH(a_file_is_on_disk_before_its_name_and_the_name_before_the_rows, set_up, tear_down) {
     const struct fixture *const f = *state;
     const char *const folder = strrchr(f->folder, '/') + 1;

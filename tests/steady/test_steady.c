@@ -193,6 +193,17 @@ TEST(a_law_of_control_brings_the_heading_to_where_a_run_has_it) {
          0.01, 0);
 }
 
+/* The course of the last period and a bias that moves slowly: this law remembers more than three beats. */
+TEST(a_law_with_a_long_memory_has_a_multiplier_without_its_error) {
+    struct steady_setup setup;
+    steady_setup_find(&setup, COARSE
+                      "steady: {tolerance: 1e-4}\n"
+                      "fish: [{" FISH ", control: {law: course, gain: 4, desired_heading: 0}}]\n");
+    ABOVE(setup.multipliers.imaginary[0], 0.1);
+    // with three beats the error is above 0.1
+    BELOW(setup.multipliers.error[0], 0.01);
+}
+
 TEST(the_state_stays_where_its_multipliers_are_taken) {
     struct steady_setup setup;
     steady_setup_open(&setup, COARSE "fish: [{" FISH ", start: {speed: 0.8}}]\n");

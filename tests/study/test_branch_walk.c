@@ -131,6 +131,21 @@ TEST(a_contact_during_the_finer_correction_keeps_the_threshold) {
     NEAR(branch->threshold[0].by_state, 0.5e-6, 1e-12, 0);
 }
 
+/* Beyond a key of 0.7 nothing is left that could grow. */
+static double excess_that_ends(double u, double key) {
+    (void)u;
+    return key > 0.7 ? NAN : -1;
+}
+
+TEST(a_branch_ends_where_no_growth_can_be_followed) {
+    struct branch *branch;
+    ARENA(arena, NULL, "a test");
+    model = (struct model){.start = 0.4, .change = change_of_line, .excess = excess_that_ends};
+    assert_int_equal(follow_model(arena, 0.4, 0.9, &branch), STATUS_SOLVER);
+    assert_non_null(strstr(status_message(), "the state has no mode whose growth could be followed; "));
+    ABOVE(branch->n_points, 1);
+}
+
 TEST(a_fold_has_no_slope_over_the_key) {
     struct branch *branch;
     ARENA(arena, NULL, "a test");
