@@ -100,15 +100,15 @@ TEST(a_plate_with_limited_suction_has_the_speed_of_a_long_run) {
 // a run converges to 1e-4 in 25 to 45 beats
 static void circle(const char *text, double least_turn, int most_beats) {
     struct steady_setup setup;
-    struct brute brute[80];
+    struct brute brute[45];
     steady_setup_open(&setup, text);
     school_ok(steady_search_run(&setup.problem));
-    run_long(text, 80, brute);
+    run_long(text, 45, brute);
     const struct steady_beat *const last = setup.problem.map.last;
     BELOW(last[0].turn, -least_turn);
-    NEAR(last[0].speed, brute[79].speed, 0, 1e-4);
+    NEAR(last[0].speed, brute[44].speed, 0, 1e-4);
     // the radius is speed over turn
-    NEAR(last[0].turn, brute[79].turn, 0, 6e-4);
+    NEAR(last[0].turn, brute[44].turn, 0, 6e-4);
     assert_in_range(setup.problem.map.n_beats, 1, most_beats);
     steady_setup_multipliers(&setup);
     BELOW(setup.multipliers.real[0], 1);
