@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Measure the tables of doc/performance.md and the speed that README.md states.
+"""Measure the tables of doc/performance.md, the speed that README.md states, and what dropping markers saves (doc/numerics.md).
 
 How to call it: scripts/measure/tables.py.
 """
@@ -174,4 +174,4 @@ def draw_real_time(path):
 
 
 if __name__ == "__main__":
-    main("README.md", "doc/performance.md", picture=draw_real_time)
+    main("README.md", "doc/performance.md", "doc/numerics.md", picture=draw_real_time)
