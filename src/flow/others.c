@@ -31,7 +31,7 @@ struct group {
 
 /* What the bounds need to know about a body at the event: the distance of its ends; how far the body is from its chord,
  * and its sources from the curve of the far points; the largest speed of a node, m s-1; the sums of the sizes of its
- * strengths; the half span; its number of sources. */
+ * strengths; the half span; and its number of sources. */
 struct body_at_event {
     double chord, bend, beside, speed, q, d, half;
     int n;
@@ -252,7 +252,8 @@ static double least_sum_of_distances(const struct others_fish *to, const struct 
 
 // ---- what is near
 
-/* Add the groups of n sources in their order; speed: of all sources, or NAN: of the marker that points name. */
+/* Add the groups of n sources in their order. They move with this speed or, with points, at the speed of the markers
+ * that the points name if that is higher. */
 static void add_groups(struct others_fish *of, const struct sources *sources, int n, double extent, double speed,
                        const struct sheet_points *points, const struct wake *wake) {
     for (int first = 0, end; first < n; first = end) {

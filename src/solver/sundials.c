@@ -1,7 +1,6 @@
-/* sundials.c: vectors of SUNDIALS, serial ones or those of OpenMP, with norms, sums and clones of our own.
- *
- * A school of 64 fish takes 3.53 s of CPU on two threads with the vectors of OpenMP, and 3.55 s with vectors of our
- * own; a school of 256 fish 3.43 s and 3.44 s. */
+/* sundials.c: vectors of SUNDIALS, serial ones or those of OpenMP, with a few operations of our own. The norms add the
+ * values in their order, so that their bits do not depend on the number of threads; the sums are compiled for the
+ * vectors of the processor; and clones belong to an arena. */
 #include "solver/sundials.h"
 
 #include <math.h>
