@@ -65,11 +65,11 @@ static enum status event_release_impulse(struct state *state, struct residual *r
     return STATUS_OK;
 }
 
-// Evaluate the velocities of the free vortices at the present state: of all, or of the newest of each fish only, which
-// has no velocity from before.
-enum which_vortices { ALL_VORTICES, NEWEST_VORTICES };
+// Evaluate the velocities of all free vortices at the present state. Either the newest vortex of each fish has no
+// velocity from the event before, or none of them has.
+enum without_velocity { NEWEST_VORTEX, ALL_VORTICES };
 
-static void event_wake_velocities(struct state *state, struct residual *residual, enum which_vortices which) {
+static void event_wake_velocities(struct state *state, struct residual *residual, enum without_velocity which) {
     const struct school *school = residual->school;
     struct flow *const flow = residual->flow;
     flow_at_wake(flow, state);
@@ -95,9 +95,9 @@ static void event_wake_velocities(struct state *state, struct residual *residual
         }
 
         if (wake->n_vortex > 0) {
-            const int n = which == ALL_VORTICES ? wake->n_vortex : 1;
+            const int n_new = which == ALL_VORTICES ? wake->n_vortex : 1;
             const double *const rate = flow->kernel->has_legs ? flow->wake_rate + first : NULL;
-            wake_set_velocity(wake, flow->wake_u + first, flow->wake_v + first, rate, n);
+            wake_set_velocity(wake, flow->wake_u + first, flow->wake_v + first, rate, n_new);
         }
     }
 }
@@ -225,7 +225,7 @@ enum status event_water(struct state *state, struct residual *residual, struct i
 
     // the water has new velocities
     if (event->jumps) TRY(initial_conditions_solve(initial, &residual_run, state->t, state->y, state->yp));
-    event_wake_velocities(state, residual, NEWEST_VORTICES);
+    event_wake_velocities(state, residual, NEWEST_VORTEX);
     return event_flow_if_used(state, residual, event->jumps);
 }
 
