@@ -243,8 +243,10 @@ static void flow_sum(struct flow *flow, const struct state *state, double t, con
 
     // sum bodies and wakes by the tree, then by far points, then one by one
     const size_t size = (size_t)flow->n_points * sizeof(double);
-    double *const sums[] = {flow->u, flow->v, flow->div, flow->u_x, flow->u_y, flow->v_x, flow->div_x, flow->div_y};
-    for (int i = 0; i < (with_gradient ? 8 : 3); i++) memset(sums[i], 0, size);
+    double *const sums[KERNEL_SUMS] = {flow->u,   flow->v,   flow->div,   flow->u_x,
+                                       flow->u_y, flow->v_x, flow->div_x, flow->div_y};
+    const int n_sums = with_gradient ? KERNEL_SUMS : KERNEL_SUMS_WITHOUT_GRADIENT;
+    for (int i = 0; i < n_sums; i++) memset(sums[i], 0, size);
     memset(flow->edge, 0, 2 * size);
     if (with_gradient) memset(flow->edge_gradient, 0, 4 * size);
     flow_select_by_tree(flow, false, flow->points);
