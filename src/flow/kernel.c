@@ -117,16 +117,24 @@ static const struct kernel_loops *loops_infinite(int i) {
     return i < n ? found[i] : NULL;
 }
 
-static WIDE(void, block_edge, (struct kernel_block * at, const struct block_sources *from), (at, from)) {
+static WIDE(void, block_edge, (struct kernel_block * at, const struct block_sources *from, bool with_gradient),
+            (at, from, with_gradient)) {
     const double scale = from->span * inverse_two_pi;
     for (int n = 0; n < from->n; n++) {
         const double x = from->x[n], y = from->y[n], dx = from->dx[n] * scale, dy = from->dy[n] * scale;
         const double half = from->factor * from->half[n] + from->leg[n];
+        double factor[KERNEL_BLOCK];
         for (int i = 0; i < KERNEL_BLOCK; i++) {
             const double rx = at->x[i] - x, ry = at->y[i] - y, t = rx * rx + ry * ry + (at->half[i] + half);
-            const double factor = -1.5 / (t * t * sqrt(t)), slope = -5 * factor / t;
-            at->edge[0][i] += factor * dx;
-            at->edge[1][i] += factor * dy;
+            factor[i] = -1.5 / (t * t * sqrt(t));
+            at->edge[0][i] += factor[i] * dx;
+            at->edge[1][i] += factor[i] * dy;
+        }
+        if (!with_gradient) continue;
+
+        for (int i = 0; i < KERNEL_BLOCK; i++) {
+            const double rx = at->x[i] - x, ry = at->y[i] - y, t = rx * rx + ry * ry + (at->half[i] + half);
+            const double slope = -5 * factor[i] / t;
             at->edge_gradient[0][i] += slope * rx * dx;
             at->edge_gradient[1][i] += slope * ry * dx;
             at->edge_gradient[2][i] += slope * rx * dy;
@@ -214,7 +222,7 @@ void kernel_induce(const struct kernel_pair *pair, const struct sources *sources
 
         const struct kernel_loops *const loops = pair->kernel->loops(0);
         if (at->u) (at->u_x ? loops->gradient : loops->velocity)(&block, &from);
-        if (at->edge && pair->kernel->edge) pair->kernel->edge(&block, &from);
+        if (at->edge && pair->kernel->edge) pair->kernel->edge(&block, &from, at->edge_gradient != NULL);
         add_block(&block, pair, at, first, n);
     }
 }

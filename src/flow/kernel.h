@@ -158,7 +158,7 @@ struct kernel {
      * for squares of distances of at least r2 and h = b^2/2 + s of at least low. */
     double (*bound)(const struct kernel_pair *pair, double r2, double low, double q, double d, double length);
     /* add the edge force to a block (NULL without legs); then one source for a Jacobian */
-    void (*edge)(struct kernel_block *at, const struct block_sources *from);
+    void (*edge)(struct kernel_block *at, const struct block_sources *from, bool with_gradient);
     void (*unit)(const struct kernel_pair *pair, const struct source *source, int n, const double *x, const double *y,
                  const double *half, struct unit_values *values);
 };
