@@ -29,6 +29,9 @@ struct group {
     double x, y, radius, q, d, half, leg, speed;
 };
 
+/* So many groups of a wake form a bundle: if it is far, all of them are. */
+enum { BUNDLE = 8 };
+
 /* What the bounds need to know about a body at the event: the distance of its ends; how far the body is from its chord,
  * and its sources from the curve of the far points; the largest speed of a node, m s-1; the sums of the sizes of its
  * strengths; the half span; and its number of sources. */
@@ -50,7 +53,9 @@ struct others_fish {
     double radius; /* of the circle around the middle that encloses body and released wake */
     double reach;  /* beyond this distance from the middle even the strongest source and the largest body are far */
     int n_released, n_body_groups, n_groups, group_capacity;
-    struct group *group; /* of the body, then of the released wake                              (n_groups) */
+    struct group *group;  /* of the body, then of the released wake                              (n_groups) */
+    struct group *bundle; /* of the released wake; `sources` says which groups                  (n_bundles) */
+    int n_bundles;
     int n_near, near_capacity;
     struct near_sources *near;    /*                                                            (n_near) */
     struct far_field wake[TIMES]; /* of the far wakes, at three times of the interval */
@@ -252,6 +257,15 @@ static double least_sum_of_distances(const struct others_fish *to, const struct 
 
 // ---- what is near
 
+/* Let the bounds of a group, apart from its circle, include those of another one. */
+static void include_bounds(struct group *group, const struct group *other) {
+    group->q = fmax(group->q, other->q);
+    group->d = fmax(group->d, other->d);
+    group->speed = fmax(group->speed, other->speed);
+    group->half = fmin(group->half, other->half);
+    group->leg = fmin(group->leg, other->leg);
+}
+
 /* Add the groups of n sources in their order. They move with this speed or, with points, at the speed of the markers
  * that the points name if that is higher. */
 static void add_groups(struct others_fish *of, const struct sources *sources, int n, double extent, double speed,
@@ -283,6 +297,24 @@ static void add_groups(struct others_fish *of, const struct sources *sources, in
         group->radius = sqrt(radius2);
         group->d = sqrt(d2);
         group->speed = sqrt(speed2);
+    }
+}
+
+/* Enclose the groups of the released wake in bundles. */
+static void add_bundles(struct others_fish *of) {
+    of->n_bundles = 0;
+    for (int first = of->n_body_groups; first < of->n_groups; first += BUNDLE) {
+        const int left = of->n_groups - first, n = left < BUNDLE ? left : BUNDLE;
+        const struct group *const part = of->group + first;
+        struct group *const bundle = &of->bundle[of->n_bundles++];
+        *bundle = (struct group){.sources = {first, n}, .half = INFINITY, .leg = INFINITY};
+        bundle->x = (part[0].x + part[n - 1].x) / 2;
+        bundle->y = (part[0].y + part[n - 1].y) / 2;
+        for (int k = 0; k < n; k++) {
+            const double dx = part[k].x - bundle->x, dy = part[k].y - bundle->y;
+            bundle->radius = fmax(bundle->radius, sqrt(dx * dx + dy * dy) + part[k].radius);
+            include_bounds(bundle, &part[k]);
+        }
     }
 }
 
@@ -318,6 +350,7 @@ static void remember_fish(struct flow *flow, const struct state *state, int f) {
     of->n_body_groups = of->n_groups;
     of->n_released = wake->n_released;
     add_groups(of, &wake->sources, wake->n_released, extent, 0, wake, &state->wake[f]);
+    add_bundles(of);
     of->radius = 0;
     for (int k = 0; k < of->n_groups; k++) {
         const double dx = of->group[k].x - of->middle[0], dy = of->group[k].y - of->middle[1];
@@ -361,14 +394,7 @@ static void find_strongest(struct flow *flow) {
         const struct body_at_event *const body = &of->at_event;
         const struct kernel_pair pair = flow_pair_of(flow, 0, g, &(struct flow_sum){BODY_AT_BODY, false});
         others->widest.span = fmax(others->widest.span, pair.span);
-        for (int k = 0; k < of->n_groups; k++) {
-            const struct group *const group = &of->group[k];
-            most->q = fmax(most->q, group->q);
-            most->d = fmax(most->d, group->d);
-            most->speed = fmax(most->speed, group->speed);
-            most->half = fmin(most->half, group->half);
-            most->leg = fmin(most->leg, group->leg);
-        }
+        for (int k = 0; k < of->n_groups; k++) include_bounds(most, &of->group[k]);
         largest->chord = fmax(largest->chord, body->chord);
         largest->bend = fmax(largest->bend, body->bend);
         largest->beside = fmax(largest->beside, body->beside);
@@ -435,9 +461,14 @@ static void find_near(struct flow *flow, int f, double n_sources) {
         const struct kernel_pair of_wake = flow_pair_of(flow, f, g, &(struct flow_sum){WAKE_AT_BODY, false});
         const struct kernel_pair of_body = flow_pair_of(flow, f, g, &(struct flow_sum){BODY_AT_BODY, false});
         bool is_near = false;
-        for (int k = from->n_body_groups; k < from->n_groups; k++) {
-            is_near = !is_far(of, interval, &of_wake, &from->group[k], true, tolerance);
-            if (is_near) add_near(of, (struct near_sources){g, from->group[k].sources, false});
+        for (int b = 0; b < from->n_bundles; b++) {
+            const struct range which = from->bundle[b].sources;
+            is_near = false;
+            if (is_far(of, interval, &of_wake, &from->bundle[b], true, tolerance)) continue;
+            for (int k = which.first; k < which.first + which.n; k++) {
+                is_near = !is_far(of, interval, &of_wake, &from->group[k], true, tolerance);
+                if (is_near) add_near(of, (struct near_sources){g, from->group[k].sources, false});
+            }
         }
         for (int k = 0; k < from->n_body_groups && !is_near; k++) {
             is_near = !is_far(of, interval, &of_body, &from->group[k], false, tolerance);
@@ -660,6 +691,7 @@ void others_select(struct flow *flow, const struct state *state) {
         if (n <= of->group_capacity) continue;
         of->group_capacity = 2 * n;
         GROW(others->arena, of->group, of->group_capacity);
+        GROW(others->arena, of->bundle, of->group_capacity / BUNDLE + 1);
     }
 
     // no parallel region requests memory: list again where the near sources are more than the memory has room for

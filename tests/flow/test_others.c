@@ -189,6 +189,15 @@ TEST(a_displaced_body_has_fewer_far_sources) {
     BELOW(error, 1);
 }
 
+// a wake that stands on the middle of a straight body, whose middle is far away and whose end is near
+TEST(a_wake_that_is_far_in_the_middle_may_be_near_at_its_end) {
+    struct simulation *const simulation = beside("1.0e-5", (const double[]){0.5, 0}, 0.1);
+    struct wake *const wake = &simulation->state->wake[1];
+    for (int i = 0; i < wake->n_vortex; i++) wake->x[i] = 0.5, wake->y[i] = 0.1 + 0.4 * i;
+    const double error = error_of(simulation, simulation->state->y, false);
+    BELOW(error, 1);
+}
+
 // a shift of everything leaves every source as far as it was
 TEST(what_is_far_does_not_depend_on_the_origin) {
     struct simulation *const simulation = swum("finite", 0.8);
