@@ -1,5 +1,6 @@
 /* case.h: reads a case. One table of keys (case_table.c) drives parsing, checking, printing and the reference
- * doc/cases.md. Tested by tests/case/test_case.c and, for bad input, tests/case/test_bad_cases.c and test_bad.sh.
+ * doc/cases.md; case_show.c prints a case, and case_keys.c the table. Tested by tests/case/test_case.c and, for bad
+ * input, tests/case/test_bad_cases.c and test_bad.sh.
  *
  *     text of the case ---yaml---> tree ---merge---> tree ---table---> struct case_values ---check--->
  *     (and includes)                  preset < include < case file < --set;  defaults.fish < fish[f] */

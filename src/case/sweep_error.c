@@ -34,7 +34,7 @@ const struct sweep_error_key sweep_error_keys[SWEEP_N_ERROR_KEYS] = {
     {"fish.body.tail_thickness", NULL, SWEEP_MODEL, {2, 0}, 0.5, .order = 1},
 };
 
-#define INPUT .kind = SWEEP_INPUT, .order = NAN
+#define INPUT .kind = SWEEP_INPUT
 #define WITH(path, value) .switch_path = path, .switch_value = value
 const struct sweep_error_key sweep_inputs[SWEEP_N_INPUTS] = {
     {"fish.length", INPUT},
@@ -90,7 +90,7 @@ double sweep_error_order(const struct case_values *values, const struct sweep_er
     // (doc/numerics.md, section 5)
     const bool is_interval = strcmp(key->path, "time.shedding_interval") == 0;
     if (is_interval && values->school.wake.shedding == SHEDDING_CONTINUOUS) return 2;
-    return key->order;
+    return key->order > 0 ? key->order : NAN;
 }
 
 // ---- reading
@@ -296,7 +296,7 @@ static void read_inputs(const struct case_values *values, const struct yaml_node
             if (name->kind != YAML_SCALAR) {
                 yaml_errors_add(errors, name->mark, "%s: expects true, a key or a list of keys", of_sensitivity);
             } else {
-                read_input(values, name->text, NAN, name->mark, of_sensitivity, errors);
+                read_input(values, name->text, 0, name->mark, of_sensitivity, errors);
             }
         }
         if (n == 0) yaml_errors_add(errors, sensitivity->mark, "%s: expects at least one key", of_sensitivity);

@@ -30,7 +30,7 @@ struct sweep_error_key {
     const char *companion; /* another key that is changed in proportion; NULL: none */
     enum sweep_error_kind kind;
     double coarser[2], finer; /* levels: the base value times these; 0: none */
-    double order;             /* design order; NaN: none. See sweep_error_order */
+    double order;             /* design order; 0: none. See sweep_error_order */
     int n_levels;             /* a choice: levels that do not depend on the base value, numbers of words among them */
     double level[2];          /* (n_levels) */
     const char *switch_path;  /* the key that must have the value of the switch; NULL: none */
@@ -81,7 +81,7 @@ enum sweep_against {
 /* A number of the case whose influence is asked for. */
 struct sweep_error_input {
     const struct sweep_error_key *key;
-    double uncertainty; /* of the number, as a part of it; NaN: only the sensitivity is asked for */
+    double uncertainty; /* of the number, as a part of it; 0: only the sensitivity is asked for */
 };
 
 struct sweep_error {

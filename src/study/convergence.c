@@ -512,7 +512,7 @@ static void judge_input(const struct error_study *study, const struct member_fil
         }
         struct convergence_slope *const slope = &key->slope[place];
         *slope = convergence_find_slope(key->n_levels, step, value, key->stated, noise);
-        const double part = fabs(slope->value * value[key->stated]) * key->uncertainty;
+        const double part = key->uncertainty > 0 ? fabs(slope->value * value[key->stated]) * key->uncertainty : NAN;
         key->part[place] = (struct convergence_result){.verdict = CONVERGENCE_ACCEPTED,
                                                        .error = part,
                                                        .finest_error = NAN,

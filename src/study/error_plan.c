@@ -530,7 +530,7 @@ static enum status choose_inputs(struct error_study *study, const struct school 
                                         .n_levels = 1,
                                         .value = {value},
                                         .member = {-1},
-                                        .uncertainty = are_all ? NAN : error->input[i].uncertainty};
+                                        .uncertainty = are_all ? 0 : error->input[i].uncertainty};
         NEW(study->sweep->arena, key->part, study->n_asked * study->n_fish);
         NEW(study->sweep->arena, key->slope, study->n_asked * study->n_fish);
     }

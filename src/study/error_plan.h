@@ -56,7 +56,7 @@ struct error_study_key {
     char objection[CONVERGENCE_BYTES]; /* reason to distrust any order, or ""; n_levels 1: reason for not varying */
     double cost_exponent;              /* exponent of the resolution in the wall time */
     struct convergence_result *part;   /* of each quantity; for a choice of the model: the change (n_asked, n_fish) */
-    double uncertainty;                /* of an input, as a part of it; NaN: none */
+    double uncertainty;                /* of an input, as a part of it; 0: none */
     struct convergence_slope *slope;   /* of an input: d ln Q/d ln p; NULL: no input              (n_asked, n_fish) */
 };
 

@@ -1181,7 +1181,7 @@ static void write_csv_rows(const struct error_sweep *sweep, FILE *file) {
                     const struct convergence_slope slope = key->slope[place];
                     write_csv_row(&row, "sensitivity_", sweep_error_name(key->row), levels, slope.value, NAN,
                                   slope.error, "");
-                    if (isnan(key->uncertainty)) continue;
+                    if (!(key->uncertainty > 0)) continue;
                     write_csv_row(&row, "", sweep_error_name(key->row), levels, study->value[place], NAN,
                                   key->part[place].error, of_input);
                     continue;

@@ -180,6 +180,10 @@ TEST(the_interval_has_the_order_of_the_shedding) {
             test_arena(), "format: 1\ntime: {end: 1}\nwake: {shedding: %s}\nfish: [{force: reactive}]\n", words[i]));
         NEAR(sweep_error_order(&values, sweep_error_find("time.shedding_interval")), i == 2 ? 2 : 1, 0, 0);
         NEAR(sweep_error_order(&values, sweep_error_find("fish.nodes")), 2, 0, 0);
+
+        // a choice between words and an input have none
+        assert_true(isnan(sweep_error_order(&values, sweep_error_find("fish.force"))));
+        assert_true(isnan(sweep_error_order(&values, &sweep_inputs[0])));
         case_free(&values);
     }
 }
