@@ -108,27 +108,31 @@ static double excess_of_fold(double u, double key) {
     return -u / 2;
 }
 
-TEST(a_threshold_has_its_value_and_slope) {
+/* The only threshold of a model while the heave goes from one value to another. */
+static struct branch_threshold only_threshold(struct model of, double from, double to) {
     struct branch *branch;
     ARENA(arena, NULL, "a test");
-    model = (struct model){.start = 0.4, .change = change_of_line, .excess = excess_of_line};
-    assert_int_equal(follow_model(arena, 0.4, 0.9, &branch), STATUS_OK);
+    model = of;
+    assert_int_equal(follow_model(arena, from, to, &branch), STATUS_OK);
     assert_int_equal(branch->n_thresholds, 1);
-    NEAR(branch->threshold[0].value, 0.6, branch->threshold[0].bar, 0);
-    NEAR(branch->threshold[0].slope, 1, 1e-6, 0);
-    assert_true(branch->threshold[0].is_unstable_above);
+    return branch->threshold[0];
+}
+
+TEST(a_threshold_has_its_value_and_slope) {
+    const struct branch_threshold found =
+        only_threshold((struct model){.start = 0.4, .change = change_of_line, .excess = excess_of_line}, 0.4, 0.9);
+    NEAR(found.value, 0.6, found.bar, 0);
+    NEAR(found.slope, 1, 1e-6, 0);
+    assert_true(found.is_unstable_above);
 }
 
 TEST(a_contact_during_the_finer_correction_keeps_the_threshold) {
-    struct branch *branch;
-    ARENA(arena, NULL, "a test");
-    model = (struct model){.start = 0.4, .change = change_of_line, .excess = excess_of_line, .touches = true};
-    assert_int_equal(follow_model(arena, 0.4, 0.9, &branch), STATUS_OK);
-    assert_int_equal(branch->n_thresholds, 1);
-    NEAR(branch->threshold[0].value, 0.6, branch->threshold[0].bar, 0);
+    const struct branch_threshold found = only_threshold(
+        (struct model){.start = 0.4, .change = change_of_line, .excess = excess_of_line, .touches = true}, 0.4, 0.9);
+    NEAR(found.value, 0.6, found.bar, 0);
 
     // the part of the state is then the tolerance, of the way from 0.4 to 0.9
-    NEAR(branch->threshold[0].by_state, 0.5e-6, 1e-12, 0);
+    NEAR(found.by_state, 0.5e-6, 1e-12, 0);
 }
 
 /* Beyond a key of 0.7 nothing is left that could grow. */
@@ -147,14 +151,11 @@ TEST(a_branch_ends_where_no_growth_can_be_followed) {
 }
 
 TEST(a_fold_has_no_slope_over_the_key) {
-    struct branch *branch;
-    ARENA(arena, NULL, "a test");
-    model = (struct model){.start = 0.5, .change = change_of_fold, .excess = excess_of_fold};
-    assert_int_equal(follow_model(arena, 0.75, 0.25, &branch), STATUS_OK);
-    assert_int_equal(branch->n_thresholds, 1);
-    assert_true(branch->threshold[0].is_fold);
+    const struct branch_threshold found =
+        only_threshold((struct model){.start = 0.5, .change = change_of_fold, .excess = excess_of_fold}, 0.75, 0.25);
+    assert_true(found.is_fold);
 
     // the states are known to the tolerance, and so is the key where they turn
-    NEAR(branch->threshold[0].value, 0.5, 1e-6, 0);
-    assert_true(isnan(branch->threshold[0].slope));
+    NEAR(found.value, 0.5, 1e-6, 0);
+    assert_true(isnan(found.slope));
 }
