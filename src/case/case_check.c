@@ -37,14 +37,18 @@ struct check {
     bool is_of_notes; /* skip a note on a value that another fish shares */
 };
 
-/* Whether a value in the same section, or of the same fish, cannot be read: relations to it would be reported in error.
- */
+/* Whether the value at a path cannot be read, or one to which it may be related: a word, an integer or a time of the
+ * same section or fish, and for a time any time. Relations to what stands in for such a value would be reported in
+ * error. */
 static bool is_misread(const struct check *check, const char *path) {
-    const bool is_of_fish = strncmp(path, "fish.", 5) == 0;
+    const bool is_of_fish = strncmp(path, "fish.", 5) == 0, is_time = case_table_row(path)->type == DURATION;
     for (const struct key *key = case_table; key < case_table + case_table_n; key++) {
         const int n_fields = case_table_n_fields(key, check->values), fish = is_of_fish ? check->index : 0;
-        if (strncmp(key->path, path, strcspn(path, ".")) != 0 || fish >= n_fields) continue;
-        if (*case_table_state(check->values, key, fish) == KEY_MISREAD) return true;
+        if (fish >= n_fields || *case_table_state(check->values, key, fish) != KEY_MISREAD) continue;
+        const bool is_near = strncmp(key->path, path, strcspn(path, ".")) == 0, is_other_time = key->type == DURATION;
+        const bool is_word = key->type == CHOICE || key->type == METHOD, is_exact = key->type == INTEGER;
+        if (strcmp(key->path, path) == 0 || (is_time && is_other_time)) return true;
+        if (is_near && (is_word || is_exact || is_other_time)) return true;
     }
     return false;
 }
