@@ -381,8 +381,7 @@ static void check_body(const struct check *check) {
     static const char *const paths[] = {"fish.body.thickness_table", "fish.body.depth_table"};
     for (int i = 0; i < 2; i++) {
         const struct number_list *const list = i == 0 ? &body->thickness_table : &body->depth_table;
-        const bool is_read = list->n > 0 || !check_is_written(check, paths[i]), are_pairs = list->width == 2;
-        const bool is_table = profile == PROFILE_TABLE && is_read;
+        const bool is_table = profile == PROFILE_TABLE, are_pairs = list->width == 2;
         complain_if(is_table && !are_pairs && list->n != fish->nodes - 1, check, paths[i],
                     "'profile: table' needs pairs [distance over length, value], as in [[0, 0.01], [0.3, 0.1], [1, "
                     "0.02]], or one value per edge, %d for %d nodes; got %d",
@@ -396,7 +395,7 @@ static void check_body(const struct check *check) {
         }
         complain_if(is_table && are_pairs && !is_ascending, check, paths[i],
                     "the distances must grow from 0 at the nose to 1 at the tail, in body lengths");
-        complain_if(profile != PROFILE_TABLE && list->n > 0, check, paths[i],
+        complain_if(!is_table && list->n > 0, check, paths[i],
                     "has an effect only with 'profile: table': remove the key");
     }
     complain_if(profile != PROFILE_JOUKOWSKI && body->tail_thickness > 0, check, "fish.body.tail_thickness",
