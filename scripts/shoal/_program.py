@@ -245,15 +245,17 @@ class Threshold(NamedTuple):
 
     key: str
     value: float
-    bar: float  #: error of the value: the sum of the next three
+    bar: float  #: error of the value: the sum of the parts below, without those that are NaN
     by_error: float  #: error of the multiplier over slope
     by_secant: float  #: length of the last secant
     by_state: float  #: what a tenth of steady.tolerance changes at the nearest state
-    unstable: str  #: "above" or "below"
+    unstable: str  #: "above" or "below" it; at a fold the side without states
     kind: str  #: "fold", "multiplier +1", "period doubling", "Neimark-Sacker"; without a beat "divergence", "flutter"
     period: float  #: of the oscillation that grows, beats, without a beat s; 0: none
     points: list  #: of the branch: a dict of value, multiplier (or growth), error, period, label and file each
     path: str  #: of study.nc
+    by_interval: float = float("nan")  #: what half the shedding interval changes; NaN: unknown, as at a fold
+    by_bodies: float = float("nan")  #: what twice as many edges and panels of the sheets change; NaN: unknown, as at a fold
     slope: float = float("nan")  #: of the modulus of the largest multiplier over the key, without a beat of the growth rate, s-1; NaN: at a fold
 
     def __float__(self):

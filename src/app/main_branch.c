@@ -84,11 +84,16 @@ static void print_threshold(struct arena *arena, const struct branch *branch, co
                 found->period > 0 ? "oscillates" : "grows steadily", period_of(arena, branch, found->period),
                 found->nearest->label);
     }
-    if (found->by_error > 0) {
-        fprintf(stream, "  the bar is %.2g by the error of the multiplier, %.2g by the secant and %.2g by the state\n",
-                found->by_error, found->by_secant, found->by_state);
-    } else {
-        fprintf(stream, "  the bar is that of the secant only: growth rates have no error\n");
+    fprintf(stream, "  the bar is ");
+    if (found->by_error > 0) fprintf(stream, "%.3g by the error of the multiplier, ", found->by_error);
+    fprintf(stream, "%.3g by the secant", found->by_secant);
+    if (branch->has_beat) fprintf(stream, ", %.3g by the state", found->by_state);
+    if (!isnan(found->by_interval)) fprintf(stream, ", %.3g by the interval", found->by_interval);
+    if (!isnan(found->by_bodies)) fprintf(stream, ", %.3g by the nodes and sheets", found->by_bodies);
+    fprintf(stream, "\n");
+    if (isnan(found->by_interval + found->by_bodies)) {
+        fprintf(stream,
+                "  it does not say what a shorter interval or finer bodies change: repeat the command with them\n");
     }
 }
 
@@ -133,6 +138,8 @@ static void print_json_threshold(const struct branch_threshold *found, FILE *str
     fprintf(stream,
             "\"threshold\": %.12g, \"bar\": %.6g, \"by_error\": %.6g, \"by_secant\": %.6g, \"by_state\": %.6g,\n  ",
             found->value, found->bar, found->by_error, found->by_secant, found->by_state);
+    if (!isnan(found->by_interval)) fprintf(stream, "\"by_interval\": %.6g, ", found->by_interval);
+    if (!isnan(found->by_bodies)) fprintf(stream, "\"by_bodies\": %.6g, ", found->by_bodies);
     if (!isnan(found->slope)) fprintf(stream, "\"slope\": %.6g, ", found->slope);
     fprintf(stream, "\"unstable\": \"%s\", ", found->is_unstable_above ? "above" : "below");
     text_print_member(stream, "", "kind", found->nearest->label);

@@ -91,25 +91,52 @@ static const char *stability_of(struct arena *arena, const struct branch *branch
 
 // ---- the case along the key
 
-/* The case with one more assignment, released with the arena. */
-static enum status case_with(const struct walk *walk, struct arena *arena, struct case_values **values,
-                             const char *assignment) {
-    const char *const assignments[] = {assignment};
-    return study_folder_parse(arena, values, walk->values->merged, walk->options->origin, 1, assignments);
+/* The case with more assignments, released with the arena. */
+static enum status case_with(const struct walk *walk, struct arena *arena, struct case_values **values, int n,
+                             const char *const *assignments) {
+    return study_folder_parse(arena, values, walk->values->merged, walk->options->origin, n, assignments);
 }
 
-static enum status case_at(const struct walk *walk, struct arena *arena, struct case_values **values, double value) {
+static const char *key_assignment(const struct walk *walk, struct arena *arena, double value) {
     struct text assignment = {.arena = arena};
     text_add(&assignment, "%s=", walk->options->key);
     text_add_number(&assignment, value);
-    return case_with(walk, arena, values, assignment.text);
+    return assignment.text;
+}
+
+static enum status case_at(const struct walk *walk, struct arena *arena, struct case_values **values, double value) {
+    const char *const assignment = key_assignment(walk, arena, value);
+    return case_with(walk, arena, values, 1, &assignment);
+}
+
+/* The case at a value of the key with half the shedding interval, or with twice as many edges and panels of sheets. */
+static enum status finer_case_at(const struct walk *walk, struct arena *arena, struct case_values **values,
+                                 double value, bool has_finer_bodies) {
+    const struct school_parameters *const school = &walk->values->school;
+    const char **assignments;
+    int n = 0;
+    NEW(arena, assignments, 2 + 2 * school->n_fish);
+    if (!has_finer_bodies) {
+        struct text interval = {.arena = arena};
+        text_add(&interval, "time.shedding_interval=");
+        text_add_number(&interval, school->shedding_interval / 2);
+        assignments[n++] = interval.text;
+    }
+    for (int f = 0; f < school->n_fish && has_finer_bodies; f++) {
+        const struct fish_parameters *const fish = &school->fish[f];
+        assignments[n++] = arena_text(arena, "fish[%d].nodes=%d", f, 2 * fish->nodes - 1);
+        assignments[n++] = arena_text(arena, "fish[%d].sheet_points=%d", f, 2 * fish->sheet_points - 1);
+    }
+    assignments[n++] = key_assignment(walk, arena, value);
+    return case_with(walk, arena, values, n, assignments);
 }
 
 /* The study of some values of the key. list: numbers, separated by commas. */
 static enum status study_with(const struct walk *walk, struct arena *arena, struct case_values **study,
                               const char *list) {
-    return case_with(walk, arena, study,
-                     arena_text(arena, "sweep=[{key: \"%s\", steady: true, values: [%s]}]", walk->options->key, list));
+    const char *const assignment =
+        arena_text(arena, "sweep=[{key: \"%s\", steady: true, values: [%s]}]", walk->options->key, list);
+    return case_with(walk, arena, study, 1, &assignment);
 }
 
 // ---- the correction: Newton's method for the changes in a beat and the plane
@@ -233,6 +260,10 @@ static const char *start_of(const struct walk *walk, int at) {
     return study_folder_path(walk->arena, walk->options->folder, branch->point[at > 0 ? at - 1 : 0]->file);
 }
 
+static double excess_of(const struct steady_point *found) {
+    return found->has_beat ? hypot(found->real, found->imaginary) - 1 : found->real;
+}
+
 /* Compute the steady state at a point with its stability: x NULL: at FROM, by a search; otherwise with the slow
  * quantities held, or, of an equilibrium, from its neighbour. Write its file and insert the point as number at. */
 static enum status add_point(struct walk *walk, int at, const double *x, double arclength) {
@@ -292,7 +323,7 @@ static enum status add_point(struct walk *walk, int at, const double *x, double 
 
     // an angle per beat, or of an equilibrium per second
     const double angle = found.has_beat ? atan2(fabs(found.imaginary), found.real) : fabs(found.imaginary);
-    point->excess = found.has_beat ? hypot(found.real, found.imaginary) - 1 : found.real;
+    point->excess = excess_of(&found);
     point->error = found.error;
     point->period = angle > least_angle ? 2 * M_PI / angle : 0;
     GROW(arena, branch->point, branch->n_points + 1);
@@ -439,6 +470,41 @@ static enum status find_error_of_key(struct walk *walk, int at, double *error) {
     return is_coarse ? STATUS_OK : status;
 }
 
+/* How far the threshold moves with half the interval, or with finer bodies: twice the change of the excess that the
+ * errors do not explain, over the slope, because the change is half of an error of first order. NaN: no finer state. */
+static enum status find_discretisation(struct walk *walk, const struct branch_point *point, double slope,
+                                       bool has_finer_bodies, double *error) {
+    struct arena *const arena = walk->arena;
+    const struct branch_options *const options = walk->options;
+    ARENA(scratch, arena, "a finer state");
+    const char *const path = study_folder_path(scratch, options->folder, "finer.nc");
+    const bool has_other_nodes = has_finer_bodies && walk->n == 0;
+    struct steady_point found = {.arena = scratch};
+    struct case_values *values;
+    *error = NAN;
+    enum status status = finer_case_at(walk, scratch, &values, point->value, has_finer_bodies);
+    if (status == STATUS_OK) {
+        // the shape of an equilibrium is of its own nodes
+        status = steady_run(
+            values, &(struct steady_options){
+                        .path = path,
+                        .from = has_other_nodes ? NULL : study_folder_path(scratch, options->folder, point->file),
+                        .overwrite = true,
+                        .judges_stability = true,
+                        .found = &found,
+                        .command = options->command,
+                        .progress = options->progress,
+                        .data = options->data,
+                        .stop = options->stop});
+        unlink(path);
+    }
+    if (status == STATUS_STOPPED || status == STATUS_FILE) return status;
+    if (status != STATUS_OK || !isfinite(found.real)) return STATUS_OK;
+    const double change = fabs(excess_of(&found) - point->excess), noise = hypot(found.error, point->error);
+    *error = change > noise ? 2 * sqrt(change * change - noise * noise) / fabs(slope) : 0;
+    return STATUS_OK;
+}
+
 /* Locate the change of stability between points number at and at + 1. If this fails with STATUS_SOLVER or
  * STATUS_CONTACT, the nearer of the points found so far has the label, and the threshold no bar. */
 static enum status locate_threshold(struct walk *walk, int at) {
@@ -448,6 +514,7 @@ static enum status locate_threshold(struct walk *walk, int at) {
         .shortest = shortest_secant, .find = find_between, .data = walk, .n = branch->n_points};
     struct threshold found = {.by_error = NAN, .by_secant = NAN, .slope = NAN};
     const double from = branch->point[at]->arclength, to = branch->point[at + 1]->arclength;
+    const double first_value = branch->point[at]->value, last_value = branch->point[at + 1]->value;
     NEW(arena, search.point, search.n);
     for (int i = 0; i < search.n; i++) {
         const struct branch_point *const point = branch->point[i];
@@ -474,8 +541,13 @@ static enum status locate_threshold(struct walk *walk, int at) {
 
     const int k = walk->n;
     const double way = walk->options->to - walk->options->from;
-    struct branch_threshold threshold = {
-        .nearest = point, .value = point->value, .bar = NAN, .slope = NAN, .period = unstable->period};
+    struct branch_threshold threshold = {.nearest = point,
+                                         .value = point->value,
+                                         .bar = NAN,
+                                         .by_interval = NAN,
+                                         .by_bodies = NAN,
+                                         .slope = NAN,
+                                         .period = unstable->period};
     point->label = turns_near(walk, nearest) && unstable->period <= 0 ? fold : kind_of(branch, unstable);
     if (status == STATUS_OK) {
         // from the arclength to the key, which turns at a fold
@@ -491,12 +563,23 @@ static enum status locate_threshold(struct walk *walk, int at) {
         threshold.by_error = bars[0];
         threshold.by_secant = bars[1];
         TRY(find_error_of_key(walk, nearest, &threshold.by_state));
-        threshold.bar = threshold.by_error + threshold.by_secant + threshold.by_state;
         // at a fold the excess has no slope over the key, which stands still
         if (point->label != fold) threshold.slope = found.slope / rate;
+        if (walk->options->to_threshold && point->label != fold) {
+            TRY(find_discretisation(walk, point, threshold.slope, false, &threshold.by_interval));
+            TRY(find_discretisation(walk, point, threshold.slope, true, &threshold.by_bodies));
+        }
+        const double by_interval = isnan(threshold.by_interval) ? 0 : threshold.by_interval;
+        const double by_bodies = isnan(threshold.by_bodies) ? 0 : threshold.by_bodies;
+        threshold.bar = threshold.by_error + threshold.by_secant + threshold.by_state + by_interval + by_bodies;
     }
     threshold.is_fold = point->label == fold;
     threshold.is_unstable_above = is_unstable(branch->point[at]) == (branch->point[at]->value > threshold.value);
+    if (threshold.is_fold) {
+        // all states near a fold are on one side of it
+        const double before = first_value - threshold.value, after = last_value - threshold.value;
+        threshold.is_unstable_above = (fabs(before) > fabs(after) ? before : after) < 0;
+    }
     GROW(arena, branch->threshold, branch->n_thresholds + 1);
     branch->threshold[branch->n_thresholds++] = threshold;
     TRY(write_study(walk));

@@ -51,14 +51,16 @@ struct branch_point {
 struct branch_threshold {
     const struct branch_point *nearest; /* the point with this label */
     double value;                       /* of the key where the excess is 0 */
-    double bar;                         /* of the value: the sum of the next three; NaN: the errors hide it */
+    double bar;                         /* of the value: the sum of the next five; NaN: the errors hide it */
     double by_error;                    /* error of the excess over the slope */
     double by_secant;                   /* length of the last secant */
     double by_state;                    /* what a tenth of steady.tolerance changes at the nearest point */
+    double by_interval;                 /* what half the shedding interval changes; NaN: unknown, not in the bar */
+    double by_bodies;                   /* the same with twice as many edges and panels of the sheet */
     double slope;                       /* of the excess over the key; NaN: at a fold, or the errors hide it */
     double period;                      /* of the nearest unstable point */
     bool is_fold;                       /* the key turns back there */
-    bool is_unstable_above;             /* whether the state is unstable at the larger values of the key */
+    bool is_unstable_above; /* whether the state is unstable, or at a fold gone, at larger values of the key */
 };
 
 struct branch {

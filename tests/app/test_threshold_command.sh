@@ -76,8 +76,9 @@ check runs_decay_and_grow_on_the_two_sides python "$root/tests/app/threshold_run
 
 run steady "$root/tests/data/falling_back.yaml" --threshold 'fish[1].motion.heave=0.083:0.07' -o fold
 check a_fold_is_named has out 'a fold: the steady states of this branch end there'
+check the_states_end_below_it grep -qF 'it does not say what a shorter interval or finer bodies change' out
 check it_has_a_bar grep -qE 'heave = 0[.]078[0-9]* \+- 0[.]0000' out
-check which_has_the_scatter_of_the_states grep -qE 'by the secant and [1-9].* by the state' out
+check which_has_the_scatter_of_the_states grep -qE 'by the secant, [1-9].* by the state' out
 
 # ---- a result is kept, and what cannot be found leaves what was found before
 

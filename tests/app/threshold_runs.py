@@ -19,7 +19,7 @@ zero = 3.4 + 0.2 * growth[3.4] / (growth[3.4] - growth[3.6])
 # ten beats are four periods, so that the growth is known to 0.5 %, and the gain without growth to 0.02
 assert abs(zero - found["threshold"]) < 0.02, (zero, growth, found)
 assert found["unstable"] == "above" and found["kind"] == "Neimark-Sacker", found
-assert 0 < found["by_error"] < found["bar"] < 0.02, found
+assert 0 < found["by_error"] < 0.02 < found["bar"], found
 decays = runs[3.4]
 crossings = np.sum(np.diff(np.sign(decays[10:50] - decays[40:].mean())) != 0)
 assert abs(80 / crossings - found["period"]) < 0.3, (crossings, found)

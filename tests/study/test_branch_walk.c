@@ -16,7 +16,11 @@ static struct model {
     double start; /* u of the state at FROM */
     double (*change)(double u, double key), (*excess)(double u, double key);
     bool touches; /* a second evaluation at a state near the threshold meets a contact */
-    double last;  /* u of the last state */
+    double per_second,
+        per_panel;        /* excess by the shedding interval, s-1, and by the width of the panels of the sheet */
+    bool no_finer_bodies; /* a state with more than 25 nodes is not found */
+    bool to_threshold;
+    double last; /* u of the last state */
 } model;
 
 static double key_of(const struct case_values *values) {
@@ -42,12 +46,15 @@ enum status model_change(const struct case_values *values, int n, const double *
 
 enum status model_run(const struct case_values *values, const struct steady_options *options) {
     const double u = options->hold ? options->hold->value[0] : model.start;
+    const struct fish_parameters *const fish = &values->school.fish[0];
+    if (model.no_finer_bodies && fish->nodes > 25) return status_fail(STATUS_SOLVER, "no state");
     struct steady_point *const found = options->found;
     found->n = 1;
     found->has_beat = true;
     NEW(found->arena, found->value, 1);
     found->value[0] = model.last = u;
-    found->real = 1 + model.excess(u, key_of(values));
+    found->real = 1 + model.excess(u, key_of(values)) + model.per_second * values->school.shedding_interval +
+                  model.per_panel / (fish->sheet_points - 1);
     found->imaginary = 0;
     found->error = 1e-4;
     return STATUS_OK;
@@ -82,6 +89,7 @@ static enum status follow_model(struct arena *arena, double from, double to, str
                                            .from = from,
                                            .to = to,
                                            .origin = "model",
+                                           .to_threshold = model.to_threshold,
                                            .folder = folder};
     const enum status status = branch_follow(arena, &values, &options, branch);
     study_folder_remove(folder);
@@ -126,6 +134,27 @@ TEST(a_threshold_has_its_value_and_slope) {
     assert_true(found.is_unstable_above);
 }
 
+TEST(the_bar_of_a_threshold_contains_that_of_a_fine_discretisation) {
+    // at an interval of 0.05 s and 48 panels the threshold is lower by 0.01, and higher by 0.005
+    struct model of = {.start = 0.4,
+                       .change = change_of_line,
+                       .excess = excess_of_line,
+                       .per_second = 0.2,
+                       .per_panel = -0.24,
+                       .to_threshold = true};
+    const struct branch_threshold found = only_threshold(of, 0.4, 0.9);
+    NEAR(found.value, 0.595, 3e-4, 0);
+    // the errors are of first order; those of the multipliers, 1e-4, explain 1e-4/0.01 of them
+    NEAR(found.by_interval, 0.01, 2e-4, 0);
+    NEAR(found.by_bodies, 0.005, 2e-4, 0);
+    NEAR(found.bar, found.by_error + found.by_secant + found.by_state + 0.015, 4e-4, 0);
+
+    of.no_finer_bodies = true;
+    const struct branch_threshold less = only_threshold(of, 0.4, 0.9);
+    assert_true(isnan(less.by_bodies));
+    NEAR(less.bar, found.bar - 0.005, 4e-4, 0);
+}
+
 TEST(a_contact_during_the_finer_correction_keeps_the_threshold) {
     const struct branch_threshold found = only_threshold(
         (struct model){.start = 0.4, .change = change_of_line, .excess = excess_of_line, .touches = true}, 0.4, 0.9);
@@ -154,6 +183,7 @@ TEST(a_fold_has_no_slope_over_the_key) {
     const struct branch_threshold found =
         only_threshold((struct model){.start = 0.5, .change = change_of_fold, .excess = excess_of_fold}, 0.75, 0.25);
     assert_true(found.is_fold);
+    assert_false(found.is_unstable_above);
 
     // the states are known to the tolerance, and so is the key where they turn
     NEAR(found.value, 0.5, 1e-6, 0);
