@@ -232,7 +232,7 @@ static void flow_sum(struct flow *flow, const struct state *state, double t, con
                      bool with_gradient) {
     flow->is_steady = is_steady;
     if (!flow->others) flow->others = others_create(flow->arena, flow);
-    others_select(flow, state);
+    others_select(flow, state, t);
     flow_place(flow, state, t, y);
     double n_sources = 0;
     for (int f = 0; f < flow->school->n_fish; f++)

@@ -137,8 +137,7 @@ static void induce_at_markers(const struct flow *flow, const struct state *state
     for (int g = 0; g < school->n_fish; g++) {
         const struct flow_sum body = {BODY_AT_WAKE, false}, wake = {WAKE_AT_WAKE, false};
         flow_induce_other(flow, f, g, &body, g == f, &at);
-        const bool is_done = g != f ? flow->is_in_pairs : own_is_in_tree(flow, f);
-        if (!is_done) flow_induce_other(flow, f, g, &wake, g == f, &at);
+        if (g != f && !flow->is_in_pairs) flow_induce_other(flow, f, g, &wake, false, &at);
     }
     if (school->walls.n == 0) return;
 
@@ -223,7 +222,17 @@ void flow_at_wake(struct flow *flow, const struct state *state) {
         at.div = sums[5];
         for (size_t i = 0; i < sizeof sums / sizeof *sums; i++) memset(sums[i], 0, (size_t)at.n * sizeof **sums);
         const struct sources *const own = &flow->fish[f].markers;
-        if (!own_is_in_tree(flow, f)) kernel_induce_mutual(&smooth, own, &at, own, &at);
+        const struct flow_sum wake = {WAKE_AT_WAKE, false};
+        if (own_is_in_tree(flow, f)) continue;
+        kernel_induce_mutual(&smooth, own, &at, own, &at);
+        if (!flow_is_by_tree(flow, f, f, &wake)) continue;
+
+        // the tree adds the wake as that of another fish, so subtract this
+        struct kernel_pair other = flow_pair_of(flow, f, f, &wake);
+        other.span = -other.span;
+        at.leg_u = at.leg_v = NULL;
+        at.div = sums[4];
+        kernel_induce_mutual(&other, own, &at, own, &at);
     }
     // Without a tree, wakes act on each other in pairs. The pairs are the rounds of a tournament, so that no fish is in
     // two pairs that threads evaluate at the same time.

@@ -9,7 +9,10 @@
 #include "base/wide.h"
 #include "flow/flow.h"
 
-enum { FAR = KERNEL_BLOCK, TIMES = 3 };
+enum { FAR = KERNEL_BLOCK };
+
+/* The times of an interval at which far wakes are summed. */
+enum { START, MIDDLE, END, TIMES };
 
 /* A body that has moved by more than this from the path of its last event, in lengths, has left it. */
 static const double most_drift = 4e-3;
@@ -58,7 +61,7 @@ struct others_fish {
     int n_bundles;
     int n_near, near_capacity;
     struct near_sources *near;    /*                                                            (n_near) */
-    struct far_field wake[TIMES]; /* of the far wakes, at three times of the interval */
+    struct far_field wake[TIMES]; /* of the far wakes; before the end only if the interval has a path */
     /* at the time of a sum: the far points, the field of all far sources, and the body by sources at its far points */
     double x[FAR], y[FAR];
     struct far_field field;
@@ -75,8 +78,10 @@ struct others {
     struct group strongest;
     struct body_at_event largest;
     bool is_selected, have_drifted;
+    bool has_path;         /* whether the far wakes of this interval are known at START and MIDDLE, too */
     struct sources points; /* far points of a class, for the tree */
     double *value;         /* sums at these points                 (KERNEL_SUMS, FAR n_fish) */
+    double n_sources;      /* of all wakes and bodies at the event */
     double t;
     unsigned long version;
     double *past; /* unknowns at the event                         (n_unknowns) */
@@ -439,12 +444,13 @@ static void add_near(struct others_fish *of, struct near_sources near) {
 /* List the near sources of fish f: the groups of each wake that are not far, and bodies of which a group is not far,
  * which do not act from far points, or whose nascent point lies behind a near group. A circle around body and wake
  * beyond the reach saves the search. */
-static void find_near(struct flow *flow, int f, double n_sources) {
+static void find_near(struct flow *flow, int f) {
     struct others *const others = flow->others;
     const struct school *const school = flow->school;
     const struct fish *const fish = &school->fish[f];
     struct others_fish *const of = &others->fish[f];
-    const double tolerance = school->wake_tolerance * fish->length * fish_rate(school, fish) / (4 * sqrt(n_sources));
+    const double tolerance =
+        school->wake_tolerance * fish->length * fish_rate(school, fish) / (4 * sqrt(others->n_sources));
     const double interval = school->interval;
     of->reach = reach_of(others, of, interval, tolerance);
     of->n_near = 0;
@@ -631,16 +637,17 @@ static void subtract_near_bodies(struct flow *flow, int f) {
     }
 }
 
-/* Sum the far wakes at the three times of the interval. The tree is faster than the sum over pairs for many fish
- * only, because it carries all sources to the nodes of its boxes for few targets. */
-static void sum_wakes(struct flow *flow, const struct state *state, double n_sources) {
+/* Sum the far wakes at the times of the interval from `first` up to `last`. The tree is faster than the sum over pairs
+ * for many fish only, because it carries all sources to the nodes of its boxes for few targets. */
+static void sum_wakes(struct flow *flow, const struct state *state, int first, int last) {
     struct others *const others = flow->others;
     const struct school *const school = flow->school;
-    const double n_interactions = n_sources * school->n_fish * FAR;
-    const bool by_tree = tree_is_faster(flow->kernel, (int)n_sources, n_interactions / 8, school->wake_tolerance);
+    const double n_interactions = others->n_sources * school->n_fish * FAR;
+    const bool by_tree =
+        tree_is_faster(flow->kernel, (int)others->n_sources, n_interactions / 8, school->wake_tolerance);
     const int threads = parallel_threads(school->threads, school->n_fish, n_interactions, PARALLEL_INTERACTIONS);
-    for (int time = 0; time < TIMES; time++) {
-        const double tau = time * school->interval / 2;
+    for (int time = first; time <= last; time++) {
+        const double tau = time * school->interval / END;
         flow_place_released(flow, state, state->t + tau);
         for (int f = 0; f < school->n_fish; f++) {
             struct others_fish *const of = &others->fish[f];
@@ -660,7 +667,46 @@ static void sum_wakes(struct flow *flow, const struct state *state, double n_sou
     }
 }
 
-void others_select(struct flow *flow, const struct state *state) {
+/* Whether a time after the event is the end of the interval, apart from rounding. */
+static bool is_end(const struct flow *flow, double tau) {
+    return fabs(tau - flow->school->interval) < 1e-9 * flow->school->interval;
+}
+
+/* List the near sources of every fish at the event, and sum the far wakes at the end of the interval. */
+static void select_at_event(struct flow *flow, const struct state *state) {
+    struct others *const others = flow->others;
+    const struct school *const school = flow->school;
+    flow_place(flow, state, state->t, others->past);
+    others->n_sources = 1;
+    for (int f = 0; f < school->n_fish; f++) {
+        struct others_fish *const of = &others->fish[f];
+        const int n = flow->fish[f].wake.middles.n_released + flow->fish[f].body.n;
+        others->n_sources += n;
+        if (n <= of->group_capacity) continue;
+        of->group_capacity = 2 * n;
+        GROW(others->arena, of->group, of->group_capacity);
+        GROW(others->arena, of->bundle, of->group_capacity / BUNDLE + 1);
+    }
+
+    // no parallel region requests memory: list again where the near sources are more than the memory has room for
+    const int threads = parallel_threads(school->threads, school->n_fish, others->n_sources, PARALLEL_VORTICES);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int f = 0; f < school->n_fish; f++) remember_fish(flow, state, f);
+    find_strongest(flow);
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+    for (int f = 0; f < school->n_fish; f++) find_near(flow, f);
+    for (int f = 0; f < school->n_fish; f++) {
+        struct others_fish *const of = &others->fish[f];
+        if (of->n_near <= of->near_capacity) continue;
+        of->near_capacity = 2 * of->n_near;
+        GROW(others->arena, of->near, of->near_capacity);
+        find_near(flow, f);
+    }
+    sum_wakes(flow, state, END, END);
+    others->has_path = false;
+}
+
+void others_select(struct flow *flow, const struct state *state, double t) {
     struct others *const others = flow->others;
     const struct school *const school = flow->school;
     const unsigned long version = state_wake_version(state, school);
@@ -672,43 +718,19 @@ void others_select(struct flow *flow, const struct state *state) {
         others->is_selected = false;
         return;
     }
+
     const size_t size = (size_t)school->n_unknowns * sizeof *others->past;
-    if (others->is_selected && others->t == state->t && others->version == version &&
-        memcmp(others->past, state->past, size) == 0) {
-        return;
+    if (!others->is_selected || others->t != state->t || others->version != version ||
+        memcmp(others->past, state->past, size) != 0) {
+        others->is_selected = true;
+        others->t = state->t;
+        others->version = version;
+        memcpy(others->past, state->past, size);
+        select_at_event(flow, state);
     }
-
-    others->is_selected = true;
-    others->t = state->t;
-    others->version = version;
-    memcpy(others->past, state->past, size);
-    flow_place(flow, state, state->t, others->past);
-    double n_sources = 1;
-    for (int f = 0; f < school->n_fish; f++) {
-        struct others_fish *const of = &others->fish[f];
-        const int n = flow->fish[f].wake.middles.n_released + flow->fish[f].body.n;
-        n_sources += n;
-        if (n <= of->group_capacity) continue;
-        of->group_capacity = 2 * n;
-        GROW(others->arena, of->group, of->group_capacity);
-        GROW(others->arena, of->bundle, of->group_capacity / BUNDLE + 1);
-    }
-
-    // no parallel region requests memory: list again where the near sources are more than the memory has room for
-    const int threads = parallel_threads(school->threads, school->n_fish, n_sources, PARALLEL_VORTICES);
-#pragma omp parallel for num_threads(threads) schedule(static)
-    for (int f = 0; f < school->n_fish; f++) remember_fish(flow, state, f);
-    find_strongest(flow);
-#pragma omp parallel for num_threads(threads) schedule(dynamic)
-    for (int f = 0; f < school->n_fish; f++) find_near(flow, f, n_sources);
-    for (int f = 0; f < school->n_fish; f++) {
-        struct others_fish *const of = &others->fish[f];
-        if (of->n_near <= of->near_capacity) continue;
-        of->near_capacity = 2 * of->n_near;
-        GROW(others->arena, of->near, of->near_capacity);
-        find_near(flow, f, n_sources);
-    }
-    sum_wakes(flow, state, n_sources);
+    if (others->has_path || is_end(flow, t - state->t)) return;
+    sum_wakes(flow, state, START, MIDDLE);
+    others->has_path = true;
 }
 
 // ---- at the time of a sum
@@ -760,17 +782,20 @@ void others_place(struct flow *flow, const struct state *state, const double *y,
     for (int f = 0; f < others->n_fish; f++) others->have_drifted |= others->fish[f].has_drifted;
 }
 
-/* Set the field of the far wakes at the far points of a fish: a parabola in time on the path of the event, and the
- * gradient times the displacement from that path. */
-static void predict_wakes(struct others_fish *of, double tau, double interval) {
-    const double s = tau / interval, weight[TIMES] = {(1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)};
+/* Set the field of the far wakes at the far points of a fish: on the path of the event that of the end, or before it a
+ * parabola in time, and the gradient times the displacement from that path. */
+static void predict_wakes(const struct flow *flow, struct others_fish *of, double tau) {
+    const double s = tau / flow->school->interval;
+    const double weight[TIMES] = {(1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)};
     double *to[KERNEL_SUMS], *from[TIMES][KERNEL_SUMS], place[2][FAR];
     struct far_field *const field = &of->field;
+    *field = of->wake[END];
     field_list(field, to);
-    for (int time = 0; time < TIMES; time++) field_list(&of->wake[time], from[time]);
-    for (int k = 0; k < KERNEL_SUMS; k++) {
+    for (int time = START; time < TIMES; time++) field_list(&of->wake[time], from[time]);
+    for (int k = 0; k < KERNEL_SUMS && !is_end(flow, tau); k++) {
         for (int i = 0; i < FAR; i++) {
-            to[k][i] = weight[0] * from[0][k][i] + weight[1] * from[1][k][i] + weight[2] * from[2][k][i];
+            to[k][i] =
+                weight[START] * from[START][k][i] + weight[MIDDLE] * from[MIDDLE][k][i] + weight[END] * from[END][k][i];
         }
     }
 
@@ -790,7 +815,7 @@ void others_sum(struct flow *flow, const struct state *state, int threads) {
     const bool by_tree = tree_is_faster(flow->kernel, n, (double)n * n, flow->school->wake_tolerance);
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int f = 0; f < others->n_fish; f++) {
-        predict_wakes(&others->fish[f], flow->t - state->t, flow->school->interval);
+        predict_wakes(flow, &others->fish[f], flow->t - state->t);
         if (by_tree) {
             subtract_near_bodies(flow, f);
         } else {

@@ -5,8 +5,9 @@
  *
  *     far points     Chebyshev points along the body; polynomials carry velocity, divergence and the gradients of both
  *                    from the far points to the points of the body
- *     far wakes      are summed three times for an interval, at its start, middle and end, at far points that move with
- *                    the velocity and the acceleration of the last event; a parabola in time gives the rest
+ *     far wakes      are summed at the end of the interval, at far points that move with the velocity and the
+ *                    acceleration of the last event; for a time before the end also at the start and in the middle,
+ *                    and a parabola in time gives the rest
  *     far bodies     act at every evaluation, from their own far points, whose strengths have the moments of the body
  *     near sources   are left to the sum of flow_at_bodies.c
  *
@@ -28,9 +29,9 @@ struct targets;
 /* Far points for all fish of the flow. */
 struct others *others_create(struct arena *arena, const struct flow *flow);
 
-/* Before a sum: if the last event or a wake has changed, find the near sources and sum the far wakes; this places the
- * flow at the event. */
-void others_select(struct flow *flow, const struct state *state);
+/* Before a sum at time t: if the last event or a wake has changed, find the near sources, and sum the far wakes at the
+ * times that t needs. This places the flow at other times. */
+void others_select(struct flow *flow, const struct state *state, double t);
 
 /* Set the far points to the unknowns y, after flow_place. */
 void others_place(struct flow *flow, const struct state *state, const double *y, int threads);

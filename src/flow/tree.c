@@ -147,36 +147,35 @@ static void matrix_fill(const struct chebyshev *chebyshev, const struct node_box
     }
 }
 
-/* A row of nodes at any address of an array of numbers. */
-typedef double row __attribute__((vector_size(NODES * sizeof(double)), aligned(sizeof(double)), may_alias));
-
-// Add the strengths at the fine nodes to the coarse nodes, one axis after the other.
+// Add the strengths at the fine nodes to the coarse nodes, one axis after the other. Nodes in x are lanes of vectors.
 static WIDE(void, add_to_coarse, (const struct node_matrix *matrix, int n_values, const double *fine, double *coarse),
             (matrix, n_values, fine, coarse)) {
     const int *const n = matrix->fine, *const m = matrix->coarse;
     for (int value = 0; value < n_values; value++) {
-        row by_y[LENGTHS][NODES];
-        for (int h = 0; h < n[2]; h++) {
-            row by_x[NODES];
-            for (int y = 0; y < n[1]; y++) {
-                const double *const from = fine + value * ALL_NODES + (h * NODES + y) * NODES;
-                row sum = {0};
-                for (int x = 0; x < n[0]; x++) sum += from[x] * *(const row *)matrix->value[0][x];
-                by_x[y] = sum;
+        for (int lane = 0; lane < m[0]; lane += WIDE_LANES) {
+            wide_lanes by_y[LENGTHS][NODES];
+            for (int h = 0; h < n[2]; h++) {
+                wide_lanes by_x[NODES];
+                for (int y = 0; y < n[1]; y++) {
+                    const double *const from = fine + value * ALL_NODES + (h * NODES + y) * NODES;
+                    wide_lanes sum = {0};
+                    for (int x = 0; x < n[0]; x++) sum += from[x] * *(const wide_lanes *)&matrix->value[0][x][lane];
+                    by_x[y] = sum;
+                }
+                for (int j = 0; j < m[1]; j++) {
+                    wide_lanes sum = {0};
+                    for (int y = 0; y < n[1]; y++) sum += matrix->value[1][y][j] * by_x[y];
+                    by_y[h][j] = sum;
+                }
             }
-            for (int j = 0; j < m[1]; j++) {
-                row sum = {0};
-                for (int y = 0; y < n[1]; y++) sum += matrix->value[1][y][j] * by_x[y];
-                by_y[h][j] = sum;
-            }
-        }
 
-        for (int k = 0; k < m[2]; k++) {
-            for (int j = 0; j < m[1]; j++) {
-                row *const to = (row *)(coarse + value * ALL_NODES + (k * NODES + j) * NODES);
-                row sum = *to;
-                for (int h = 0; h < n[2]; h++) sum += matrix->value[2][h][k] * by_y[h][j];
-                *to = sum;
+            for (int k = 0; k < m[2]; k++) {
+                for (int j = 0; j < m[1]; j++) {
+                    wide_lanes *const to = (wide_lanes *)(coarse + value * ALL_NODES + (k * NODES + j) * NODES + lane);
+                    wide_lanes sum = *to;
+                    for (int h = 0; h < n[2]; h++) sum += matrix->value[2][h][k] * by_y[h][j];
+                    *to = sum;
+                }
             }
         }
     }
@@ -188,22 +187,33 @@ static WIDE(void, add_to_fine, (const struct node_matrix *matrix, int n_values, 
     const int *const n = matrix->fine, *const m = matrix->coarse;
     for (int value = 0; value < n_values; value++) {
         for (int h = 0; h < n[2]; h++) {
-            row by_h[NODES];
+            double by_h[NODES][NODES];
             for (int j = 0; j < m[1]; j++) {
-                row sum = {0};
-                for (int k = 0; k < m[2]; k++) {
-                    sum +=
-                        matrix->value[2][h][k] * *(const row *)(coarse + value * ALL_NODES + (k * NODES + j) * NODES);
+                for (int lane = 0; lane < m[0]; lane += WIDE_LANES) {
+                    const double *const from = coarse + value * ALL_NODES + j * NODES + lane;
+                    wide_lanes sum = {0};
+                    for (int k = 0; k < m[2]; k++) {
+                        sum += matrix->value[2][h][k] * *(const wide_lanes *)(from + k * NODES * NODES);
+                    }
+                    *(wide_lanes *)&by_h[j][lane] = sum;
                 }
-                by_h[j] = sum;
             }
 
             for (int y = 0; y < n[1]; y++) {
-                row *const to = (row *)(fine + value * ALL_NODES + (h * NODES + y) * NODES);
-                row by_y = {0}, sum = *to;
-                for (int j = 0; j < m[1]; j++) by_y += matrix->value[1][y][j] * by_h[j];
-                for (int i = 0; i < m[0]; i++) sum += by_y[i] * *(const row *)matrix->in_x[i];
-                *to = sum;
+                double by_y[NODES];
+                for (int lane = 0; lane < m[0]; lane += WIDE_LANES) {
+                    wide_lanes sum = {0};
+                    for (int j = 0; j < m[1]; j++) {
+                        sum += matrix->value[1][y][j] * *(const wide_lanes *)&by_h[j][lane];
+                    }
+                    *(wide_lanes *)&by_y[lane] = sum;
+                }
+                for (int lane = 0; lane < n[0]; lane += WIDE_LANES) {
+                    wide_lanes *const to = (wide_lanes *)(fine + value * ALL_NODES + (h * NODES + y) * NODES + lane);
+                    wide_lanes sum = *to;
+                    for (int i = 0; i < m[0]; i++) sum += by_y[i] * *(const wide_lanes *)&matrix->in_x[i][lane];
+                    *to = sum;
+                }
             }
         }
     }
@@ -413,12 +423,16 @@ static void boxes_pair_up(const struct search *search, int target, int source) {
 
 // add a source to the nodes; by: values of the polynomials at the source
 static WIDE(void, add_source,
-            (const int n[AXES], int n_values, const row by[AXES], const double strength[VALUES], double *value),
+            (const int n[AXES], int n_values, double by[AXES][NODES], const double strength[VALUES], double *value),
             (n, n_values, by, strength, value)) {
     for (int i = 0; i < n_values; i++) {
         for (int h = 0; h < n[2]; h++) {
             for (int y = 0; y < n[1]; y++) {
-                *(row *)(value + i * ALL_NODES + (h * NODES + y) * NODES) += by[2][h] * by[1][y] * strength[i] * by[0];
+                double *const row = value + i * ALL_NODES + (h * NODES + y) * NODES;
+                const double factor = by[2][h] * by[1][y] * strength[i];
+                for (int lane = 0; lane < n[0]; lane += WIDE_LANES) {
+                    *(wide_lanes *)(row + lane) += factor * *(const wide_lanes *)&by[0][lane];
+                }
             }
         }
     }
@@ -445,9 +459,9 @@ static void box_gather(const struct tree *tree, bool has_legs, int b) {
     for (int p = points->first; p < points->first + points->n; p++) {
         const double at[AXES] = {rings->x[p], rings->y[p], rings->leg[p]};
         const double strength[VALUES] = {rings->q[p], rings->dx[p], rings->dy[p]};
-        row by[AXES];
+        double by[AXES][NODES];
         for (int axis = 0; axis < AXES; axis++) {
-            lagrange(&tree->chebyshev, box->n[axis], in_box(box, axis, at[axis]), (double *)&by[axis], NULL);
+            lagrange(&tree->chebyshev, box->n[axis], in_box(box, axis, at[axis]), by[axis], NULL);
         }
         add_source(box->n, has_legs ? 3 : 1, by, strength, box->value);
     }
@@ -555,16 +569,20 @@ static void pair_induce(const struct tree *tree, const struct kernel_pair *with,
 
 // a polynomial at a point; by_x, by_y, by_h: values, or derivatives, of the polynomials of the nodes at the point
 static WIDE(double, polynomial,
-            (const int n[AXES], const double *value, const row *by_x, const row *by_y, const row *by_h),
+            (const int n[AXES], const double *value, const double *by_x, const double *by_y, const double *by_h),
             (n, value, by_x, by_y, by_h)) {
-    row sum = {0};
-    for (int h = 0; h < n[2]; h++) {
-        for (int y = 0; y < n[1]; y++) {
-            sum += (*by_h)[h] * (*by_y)[y] * *(const row *)(value + (h * NODES + y) * NODES);
+    double all = 0;
+    for (int lane = 0; lane < n[0]; lane += WIDE_LANES) {
+        wide_lanes sum = {0};
+        for (int h = 0; h < n[2]; h++) {
+            for (int y = 0; y < n[1]; y++) {
+                sum += by_h[h] * by_y[y] * *(const wide_lanes *)(value + (h * NODES + y) * NODES + lane);
+            }
         }
+        sum *= *(const wide_lanes *)(by_x + lane);
+        for (int i = 0; i < WIDE_LANES; i++) all += sum[i];
     }
-    sum *= *by_x;
-    return ((sum[0] + sum[4]) + (sum[2] + sum[6])) + ((sum[1] + sum[5]) + (sum[3] + sum[7]));
+    return all;
 }
 
 // carry the values at the nodes of a box to the nodes of its halves, or to the targets of a leaf
@@ -586,23 +604,23 @@ static void box_scatter(const struct tree *tree, bool has_legs, bool with_gradie
     const double *const u = box->value, *const v = u + ALL_NODES, *const div = v + ALL_NODES;
     for (int p = points->first; p < points->first + points->n; p++) {
         const double at[AXES] = {tree->x[p], tree->y[p], tree->h[p]};
-        row by[AXES], slope[AXES];
+        double by[AXES][NODES], slope[AXES][NODES];
         for (int axis = 0; axis < AXES; axis++) {
-            lagrange(&tree->chebyshev, box->n[axis], in_box(box, axis, at[axis]), (double *)&by[axis],
-                     with_gradient ? (double *)&slope[axis] : NULL);
+            lagrange(&tree->chebyshev, box->n[axis], in_box(box, axis, at[axis]), by[axis],
+                     with_gradient ? slope[axis] : NULL);
         }
 
-        tree->sum[0][p] += polynomial(box->n, u, &by[0], &by[1], &by[2]);
-        tree->sum[1][p] += polynomial(box->n, v, &by[0], &by[1], &by[2]);
-        if (has_legs) tree->sum[2][p] += polynomial(box->n, div, &by[0], &by[1], &by[2]);
+        tree->sum[0][p] += polynomial(box->n, u, by[0], by[1], by[2]);
+        tree->sum[1][p] += polynomial(box->n, v, by[0], by[1], by[2]);
+        if (has_legs) tree->sum[2][p] += polynomial(box->n, div, by[0], by[1], by[2]);
         if (!with_gradient) continue;
         const double per_x = box->half[0] > 0 ? 1 / box->half[0] : 0, per_y = box->half[1] > 0 ? 1 / box->half[1] : 0;
-        tree->sum[3][p] += per_x * polynomial(box->n, u, &slope[0], &by[1], &by[2]);
-        tree->sum[4][p] += per_y * polynomial(box->n, u, &by[0], &slope[1], &by[2]);
-        tree->sum[5][p] += per_x * polynomial(box->n, v, &slope[0], &by[1], &by[2]);
+        tree->sum[3][p] += per_x * polynomial(box->n, u, slope[0], by[1], by[2]);
+        tree->sum[4][p] += per_y * polynomial(box->n, u, by[0], slope[1], by[2]);
+        tree->sum[5][p] += per_x * polynomial(box->n, v, slope[0], by[1], by[2]);
         if (!has_legs) continue;
-        tree->sum[6][p] += per_x * polynomial(box->n, div, &slope[0], &by[1], &by[2]);
-        tree->sum[7][p] += per_y * polynomial(box->n, div, &by[0], &slope[1], &by[2]);
+        tree->sum[6][p] += per_x * polynomial(box->n, div, slope[0], by[1], by[2]);
+        tree->sum[7][p] += per_y * polynomial(box->n, div, by[0], slope[1], by[2]);
     }
 }
 
