@@ -53,14 +53,14 @@ check a_run_with_a_closed_output_says_so ended 4
 
 for how in '' '--set steady.tolerance=0.001' "--set solver.rtol=1e-7"; do
     # shellcheck disable=SC2086 # options
-    run_until TERM 'sleep 0.4' steady steady.yaml -q -o steady.nc --force $how
+    run_until TERM 'sleep 0.2' steady steady.yaml -q -o steady.nc --force $how
     ended 0 || check "a search that is stopped ($how)" eval \
         'ended 75 && grep -q "stopped by a signal in beat [0-9]* of the search\(, at a speed of .*\)\?; a search cannot be resumed: start the search again" err'
 done
 run steady steady.yaml -q -o steady.nc --force --max-wall 0:00:01
 check max_wall_stops_a_search eval 'ended 75 && has err "stopped after --max-wall in beat "'
-# half a minute of set-up
-run_until TERM 'sleep 0.4' steady steady.yaml -q -o steady.nc --force --set 'fish[0].nodes=999' --set 'fish[0].sheet_points=1997'
+# some ten seconds of set-up
+run_until TERM 'sleep 0.2' steady steady.yaml -q -o steady.nc --force --set 'fish[0].nodes=999' --set 'fish[0].sheet_points=1997'
 check a_search_is_stopped_during_its_set_up eval 'ended 75 && has err "stopped by a signal before the search: start the search again"'
 run steady --help
 check help_promises_no_resumption_of_a_search test -z "$(grep 'resume goes on' out)"

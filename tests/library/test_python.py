@@ -492,7 +492,7 @@ class Words(unittest.TestCase):
     def test_ctrl_c_stops_the_set_up(self):
         # this set-up takes minutes
         fine = {**PAIR, "fish": [{"nodes": 1500}]}
-        timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+        timer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
         timer.start()
         started = time.monotonic()
         with self.assertRaises(KeyboardInterrupt):
@@ -507,31 +507,27 @@ class Words(unittest.TestCase):
         run = shoal.Run(long)
         whole = run["x"].tobytes()
         for call in (run.step, lambda: run.advance(run.end), lambda: run.advance(run.end, progress=lambda *_: None)):
-            timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+            timer = threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT))
             timer.start()
-            started = time.monotonic()
             with self.assertRaises(KeyboardInterrupt):
                 call()
-            self.assertLess(time.monotonic() - started, 30)
             timer.join()
             self.assertEqual((run.time, run["x"].tobytes()), (0, whole))
 
         # an environment too, and its run is at an event
         environment = shoal.SwimEnv(long)
         environment.reset()
-        timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+        timer = threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT))
         timer.start()
-        started = time.monotonic()
         with self.assertRaises(KeyboardInterrupt):
             environment.step(environment.action_space.sample())
-        self.assertLess(time.monotonic() - started, 30)
         timer.join()
         self.assertEqual(environment.run.time, 0)
 
         # the set-up of the copy takes as long as that of the run
-        large = shoal.Run({**PAIR, "fish": [{"nodes": 250}]})
+        large = shoal.Run({**PAIR, "fish": [{"nodes": 200}]})
         for copied in (large.clone, lambda: copy.copy(large), lambda: copy.deepcopy(large)):
-            timer = threading.Timer(0.05, os.kill, (os.getpid(), signal.SIGINT))
+            timer = threading.Timer(0.02, os.kill, (os.getpid(), signal.SIGINT))
             timer.start()
             with self.assertRaises(KeyboardInterrupt):
                 copied()
@@ -632,31 +628,32 @@ class Programs(unittest.TestCase):
         case = {"format": 1, "name": "plate", "time": {"end": 5, "shedding_interval": 0.05}, "wake": {"lifetime": 3, "smoothing": 0.2},
                 "fluid": {"density": 1, "viscosity": 2e-3}, "steady": {"tolerance": 1e-3}, "fish": [{"name": "plate", **plate}]}
         key = "fish[*].motion.heave"
-        found = shoal.branch(case, key, 0.15, 0.12)
+        found = shoal.branch(case, key, 0.15, 0.14)
         heave = found["motion_heave"].values
-        self.assertEqual((heave[0], heave[-1]), (0.15, 0.12))
+        self.assertEqual((heave[0], heave[-1]), (0.15, 0.14))
         self.assertTrue((np.diff(heave) < 0).all() and (np.diff(found["arclength"]) > 0).all(), found)
         self.assertTrue((found["steady_multiplier"] < 1).all() and (np.diff(found["steady_speed"][:, 0]) < 0).all(), found)
-        state = shoal.steady(case, {key: 0.12}, overwrite=True)
+        state = shoal.steady(case, {key: 0.14}, overwrite=True)
         self.assertLess(abs(float(found["steady_speed"][-1, 0]) / state.speed[0] - 1), 2e-3)
         self.assertEqual(found.attrs["path"], os.path.join("plate-branch", "study.nc"))
         with self.assertRaisesRegex(shoal.FileError, "overwrite|--force"):
-            shoal.branch(case, key, 0.15, 0.12)
+            shoal.branch(case, key, 0.15, 0.14)
 
     def test_a_threshold_has_a_bar(self):
         flag, key = str(ROOT / "cases/flag.yaml"), "fish[*].body.modulus"
+        coarse = {"fish[*].nodes": 9, "time.shedding_interval": 0.05, "time.output_interval": 0.1}
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            found = shoal.threshold(flag, key, 5e4, 1e5, {"fish[*].nodes": 9}, path="flutter")
+            found = shoal.threshold(flag, key, 5e4, 1e5, coarse, path="flutter")
             self.assertEqual((found.kind, found.unstable, found.key), ("flutter", "below", key))
             self.assertAlmostEqual(found.bar, found.by_secant + found.by_state + found.by_interval + found.by_bodies, delta=1e-3 * found.bar)
             self.assertTrue(5e4 < float(found) < 1e5 and found.by_error == 0 < found.by_secant < 10, found)
             for side in (-1, 1):
-                state = shoal.steady(flag, {"fish[*].nodes": 9, key: found.value + side * 3 * found.by_secant}, overwrite=True)
+                state = shoal.steady(flag, {**coarse, key: found.value + side * 3 * found.by_secant}, overwrite=True)
                 self.assertEqual(state.is_stable, side > 0)
             self.assertRegex(str(found), r"^fish\[\*\]\.body\.modulus = \d+.* \N{PLUS-MINUS SIGN} .*: unstable below it \(flutter\)$")
             with self.assertRaisesRegex(shoal.SolverError, "stable at both; .* steady states were found"):
-                shoal.threshold(flag, key, 9.5e4, 1e5, path="none")
+                shoal.threshold(flag, key, 9.5e4, 1e5, coarse, path="none")
             with self.assertRaisesRegex(shoal.CaseError, "two different numbers"):
                 shoal.threshold(flag, key, 1e5, 1e5)
 

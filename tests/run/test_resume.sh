@@ -287,12 +287,11 @@ check an_ignored_signal_stays_ignored kill -0 "$pid"
 end TERM
 check the_others_do_not test "$code" = 75
 rm -f ./*.nc ./*.ckpt*
-run run swimmer.yaml -q --max-wall 0:00:01 --set time.end=1000 -o run.nc
+mkdir "it's a folder"
+run run swimmer.yaml -q --max-wall 0:00:01 --set time.end=1000 -o "it's a folder/run.nc"
 check max_wall eval 'test "$code" = 75 && has err "stopped after --max-wall at t = "'
 
 # the command in a message is one for a shell
-mkdir "it's a folder"
-run run swimmer.yaml -q --max-wall 0:00:01 --set time.end=1000 -o "it's a folder/run.nc"
 sed -n "s/.*continue with '\(.*\)'\$/\1/p" err >command.sh
 echo "$(<command.sh) -q --max-wall 0:00:01" >again.sh
 shoal() { run "$@"; }

@@ -41,7 +41,7 @@ run steady plates.yaml --continue "$key=0.085:0.09" --force --max-wall 00:00:01
 check a_limit_ends_it_with_what_was_found eval 'test "$code" = 75 && has err "stopped after --max-wall"'
 
 # a beat of another length has no whole number of events
-run steady plates.yaml --continue 'fish[*].motion.frequency=1:0.1' -o slow
+run steady plate.yaml --continue 'fish[*].motion.frequency=1:0.1' -o slow
 check an_end_without_a_state_says_how_far_it_came eval 'test "$code" = 2 && has err "events" &&
     has err "; 1 steady state was found, at fish[*].motion.frequency = 1 with" && test -s slow/study.nc'
 
