@@ -34,20 +34,25 @@ struct check {
     int index;
     const struct fish_parameters **named; /* the fish with a name, in the order of the names             (n_named) */
     int n_named;
-    bool is_of_notes; /* skip a note on a value that another fish shares */
+    bool is_of_notes;  /* skip a note on a value that another fish shares */
+    bool is_of_limits; /* the messages are on single numbers, whatever the values of other keys are */
 };
 
 /* Whether the value at a path cannot be read, or one to which it may be related: a word, an integer or a time of the
- * same section or fish, and for a time any time. Relations to what stands in for such a value would be reported in
- * error. */
+ * same section or fish, any value of the same subsection, and for a time any time. Relations to what stands in for such
+ * a value would be reported in error. */
 static bool is_misread(const struct check *check, const char *path) {
     const bool is_of_fish = strncmp(path, "fish.", 5) == 0, is_time = case_table_row(path)->type == DURATION;
+    const char *const dot = strrchr(path, '.');
+    const size_t subsection = dot ? (size_t)(dot - path) : strlen(path);
     for (const struct key *key = case_table; key < case_table + case_table_n; key++) {
         const int n_fields = case_table_n_fields(key, check->values), fish = is_of_fish ? check->index : 0;
         if (fish >= n_fields || *case_table_state(check->values, key, fish) != KEY_MISREAD) continue;
+        if (strcmp(key->path, path) == 0) return true;
+        if (check->is_of_limits) continue;
         const bool is_near = strncmp(key->path, path, strcspn(path, ".")) == 0, is_other_time = key->type == DURATION;
         const bool is_word = key->type == CHOICE || key->type == METHOD, is_exact = key->type == INTEGER;
-        if (strcmp(key->path, path) == 0 || (is_time && is_other_time)) return true;
+        if (strncmp(key->path, path, subsection + 1) == 0 || (is_time && is_other_time)) return true;
         if (is_near && (is_word || is_exact || is_other_time)) return true;
     }
     return false;
@@ -267,13 +272,17 @@ static void check_wake(const struct check *check) {
 /* Limit the number of cycles, so that a double resolves the phase until time.end. */
 static void check_cycles(const struct check *check, const char *path, double frequency) {
     const double cycles = frequency * check->values->time.end;
-    complain_if(cycles > max_cycles, check, path,
+    struct check limits = *check;
+    limits.is_of_limits = true;
+    complain_if(cycles > max_cycles, &limits, path,
                 "%g cycles until time.end; the maximum is %g: beyond, rounding destroys the phase", cycles, max_cycles);
 }
 
 /* Limit a coordinate, so that a double resolves the shape of the body. */
 static void check_place(const struct check *check, const char *path, double place, double length) {
-    complain_if(fabs(place) > max_lengths * length, check, path,
+    struct check limits = *check;
+    limits.is_of_limits = true;
+    complain_if(fabs(place) > max_lengths * length, &limits, path,
                 "%g m is %g body lengths; the maximum is %g: beyond, rounding destroys the shape of the body", place,
                 fabs(place) / length, max_lengths);
 }

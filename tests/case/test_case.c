@@ -338,6 +338,9 @@ TEST(what_stands_in_for_a_value_with_an_error_causes_no_error) {
     assert_non_null(strstr(status_message(), "fish[0].body.profile: expects one of"));
     assert_null(strstr(status_message(), "fish[0].sheet_points"));
     assert_null(strstr(status_message(), "fish[0].body.depth_table"));
+    is_refused("format: 1\ntime: {end: 1}\nfish: [{motion: {prescribed: head, heave: 0.1, frequency: x}}]\n",
+               "fish[0].motion.frequency: expects a number");
+    assert_null(strstr(status_message(), "fish[0].motion.heave"));
     // times of two sections
     is_refused("format: 1\ntime: {end: 1, output_interval: x}\noutput: {wake_interval: 0.025}\nfish: [{}]\n",
                "time.output_interval: expects a number in s");
