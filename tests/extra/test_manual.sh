@@ -83,25 +83,7 @@ check numbers_are_not completes 'shoal study -j ' ''
 run keys --json
 "$root/scripts/make-schema.py" <out >schema.json
 check the_schema_is_that_of_doc diff schema.json "$root/doc/case.schema.json"
-cat >validate.py <<'end'
-"""Validate cases by the schema as an editor does; the words of what is wrong with each."""
-import json, re, sys
-import jsonschema, yaml
-
-class Loader(yaml.SafeLoader):
-    """Numbers as in YAML 1.2."""
-
-Loader.add_implicit_resolver(
-    "tag:yaml.org,2002:float", re.compile(r"^[-+]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][-+]?[0-9]+)?$"), list("-+0123456789.")
-)
-schema = json.load(open("schema.json"))
-jsonschema.Draft7Validator.check_schema(schema)
-validator = jsonschema.Draft7Validator(schema)
-for path in sys.argv[1:]:
-    for error in validator.iter_errors(yaml.load(open(path, encoding="utf-8"), Loader)):
-        print(f"{path}: {'.'.join(map(str, error.absolute_path))}: {error.message}")
-end
-validate() { timeout "$time_limit" /usr/bin/python3 validate.py "$@" >wrong 2>&1 && [[ ! -s wrong ]] || { cat wrong; false; }; }
+validate() { timeout "$time_limit" /usr/bin/python3 "$root/tests/extra/validate_cases.py" "$@" >wrong 2>&1 && [[ ! -s wrong ]] || { cat wrong; false; }; }
 check_with 'import jsonschema' all_cases_are_valid validate "$root"/cases/*.yaml "$root"/cases/*/*.yaml
 cat >wrong.yaml <<'end'
 format: 1

@@ -9,20 +9,7 @@ export MPLCONFIGDIR=$folder/matplotlib
 
 # the blocks of the tutorial as files: 01-sh, 02-python, ..., and the cases by the names in the text; a script begins with
 # the scripts above, whose variables it uses
-/usr/bin/python3 - "$root" <<'end'
-import sys
-
-sys.path.insert(0, f"{sys.argv[1]}/scripts")
-import documents
-
-scripts = ""
-for number, block in enumerate(documents.blocks_of(open(f"{sys.argv[1]}/doc/tutorial.md", encoding="utf-8").read())):
-    if block.kind == "output":
-        continue
-    scripts += block.text if block.kind == "python" else ""
-    with open(block.file or f"{number:02}-{block.kind}", "w", encoding="utf-8") as file:
-        file.write(scripts if block.kind == "python" else block.text)
-end
+/usr/bin/python3 "$root/tests/extra/tutorial_blocks.py" "$root"
 
 shoal() {
     local short=()
