@@ -112,7 +112,7 @@ usual_c_tests = $(filter-out $(if $(TEST)$(sanitize),,$(extra_c_tests)),$(c_test
 longest      = python error branch steady_formation study command resume results steady_command threshold_command cases
 first_tests  = $(foreach test,$(longest),$(filter %/test_$(test) %/test_$(test).sh,$(c_tests) $(shell_tests)))
 # C tests of more than three seconds, not in make check
-long_c_tests  = contact diagnostics diagnostics_momentum estimate flow_at_markers flow_sources sensor_pressure simulate steady steady_formation take_up tree warnings
+long_c_tests  = contact diagnostics diagnostics_momentum flow_at_markers flow_sources sensor_pressure simulate steady steady_formation take_up tree warnings
 quick_c_tests = $(filter-out $(foreach test,$(long_c_tests),%/test_$(test)),$(usual_c_tests))
 test_helpers  = $(patsubst tests/%.c,$(B)/tests/%.o,$(wildcard tests/*.c))
 

@@ -47,7 +47,6 @@ enter() {  # chroot, command...
         mount --rbind /dev "$root/dev"
         exec chroot "$root" /usr/bin/env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 \
             DEBIAN_FRONTEND=noninteractive ${http_proxy:+http_proxy="$http_proxy"} TIME_LIMIT="$TIME_LIMIT" \
-            ${emulated:+EMULATED=1} \
             bash -euo pipefail -c "cd /shoal && $*"' - "$@" </dev/null
 }
 
@@ -154,8 +153,6 @@ row() {  # chroot, compiler, checks
 
 run_platform() {  # name, release, architecture, compiler, checks
     local name=$1 release=$2 architecture=$3 compiler=$4 checks=$5 root=$work/$1 check code started all=yes
-    emulated=''
-    [[ $architecture == "$(dpkg --print-architecture)" ]] || export emulated=yes
     emulate "$architecture" || skip_all "$name: programs of $architecture cannot be run here"
     if [[ -z ${REUSE-} || ! -d $root/shoal ]]; then
         make_chroot "$root" "$release" "$architecture" || skip_all "$name: no chroot of $release for $architecture from $mirror"
