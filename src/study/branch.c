@@ -745,12 +745,18 @@ static void remove_earlier(const struct walk *walk, const char *study) {
 static enum status refuse(struct walk *walk) {
     const struct branch_options *const options = walk->options;
     ARENA(scratch, walk->arena, "the ends");
-    struct case_values *values;
+    struct case_values *values, *from, *to;
     struct text list = {.arena = scratch};
     text_add_number(&list, options->from);
     text_add(&list, ", ");
     text_add_number(&list, options->to);
-    TRY(study_with(walk, scratch, &values, list.text));
+    const enum status status = study_with(walk, scratch, &values, list.text);
+    if (status == STATUS_CASE) {
+        // the message on one end of the way, where it has one, names the key as the user did
+        TRY(case_at(walk, scratch, &from, options->from));
+        TRY(case_at(walk, scratch, &to, options->to));
+    }
+    TRY(status);
     const struct sweep_key *const key = &values->sweep[0].key[0];
     const enum key_type type = case_table_row(key->row)->type;
     walk->branch->unit = arena_text(walk->arena, "%s", key->unit);
@@ -763,10 +769,10 @@ static enum status refuse(struct walk *walk) {
     if (walk->values->steady.multipliers == NO) {
         return status_fail(STATUS_CASE, "%s needs the multipliers: set steady.multipliers to true", options->option);
     }
-    TRY(case_at(walk, scratch, &values, options->to));
-    TRY(steady_refuse(values));
-    TRY(case_at(walk, scratch, &values, options->from));
-    return steady_refuse(values);
+    TRY(case_at(walk, scratch, &to, options->to));
+    TRY(steady_refuse(to));
+    TRY(case_at(walk, scratch, &from, options->from));
+    return steady_refuse(from);
 }
 
 enum status branch_follow(struct arena *arena, const struct case_values *values, const struct branch_options *options,

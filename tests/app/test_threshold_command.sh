@@ -95,7 +95,7 @@ check its_message_has_the_remedy has err '--from stopped/state-000.nc goes on fr
 for way in fish "$key" "$key=1:" "$key=:2" "$key=1" "$key=1:1" "$key=nan:1" "$key=1:inf" "$key=1:2:3" "=1:2"; do
     refused "the_way_is_wrong:$way" 2 'expects KEY=FROM:TO with two different numbers' steady flag.yaml --threshold "$way"
 done
-refused an_unknown_key 2 "unknown key" steady flag.yaml --threshold 'fish[*].body.modulos=1e4:1e5'
+refused an_unknown_key 2 '--set fish[*].body.modulos=10000: error: fish[*].body.modulos: unknown key' steady flag.yaml --threshold 'fish[*].body.modulos=1e4:1e5'
 refused an_integer 2 'is an integer, which has no values in between' steady flag.yaml --threshold 'fish[*].nodes=7:13'
 refused a_word 2 'expects one of' steady flag.yaml --threshold 'fish[*].force=1:2'
 refused out_of_range 2 'body.modulus' steady flag.yaml --threshold "$key=-1:2"
