@@ -108,7 +108,7 @@ def threshold_of(rows):
     if first is None:
         return None
     middle = np.sqrt(rows[first - 1]["heave"] * rows[first]["heave"])
-    near = [row for row in rows if 1 / WITHIN < row["heave"] / middle < WITHIN]
+    near = [row for i, row in enumerate(rows) if first - 1 <= i <= first or 1 / WITHIN < row["heave"] / middle < WITHIN]
     excess = np.array([row["multiplier"] - 1 for row in near])
     error = np.array([max(row["error"], LEAST_ERROR) for row in near])
     way = np.log([row["heave"] for row in near])

@@ -136,6 +136,9 @@ class Examples(unittest.TestCase):
         # no threshold without states on both sides, but a bound
         heaves = heaves[3:]
         self.assertIsNone(chart.threshold_of(rows(0, 0.001)))
+        # two states far from each other have a line, too
+        sparse = [{"heave": heave, "multiplier": multiplier, "error": 0.01} for heave, multiplier in ((0.3, 0.95), (0.1, 1.05))]
+        self.assertAlmostEqual(chart.threshold_of(sparse)[0], np.sqrt(0.03), places=12)
         self.assertEqual(chart.bound_of(rows(0, 0.001)), 0.15)
         self.assertEqual(next(chart.report(rows(0, 0.001))), "4 plates: stable down to 0.15 m (1 s of CPU time a state)")
         self.assertIsNone(chart.bound_of(rows(0, 0.5)))
