@@ -997,7 +997,9 @@ static bool decides_cost(const struct sweep_key *column) {
 /* Whether two members cost the same, as far as keys decide it. */
 static bool cost_the_same(const struct error_sweep *sweep, int a, int b) {
     const struct sweep_axis *const axis = &sweep->study.sweep[0];
-    bool is_same = axis->is_against[a] == axis->is_against[b] && (axis->before[a] < 0) == (axis->before[b] < 0);
+    const bool are_searches = sweep->point[0].is_steady;  // shorter from a neighbour
+    bool is_same =
+        axis->is_against[a] == axis->is_against[b] && (!are_searches || (axis->before[a] < 0) == (axis->before[b] < 0));
     for (int c = 0; c < axis->n_keys && is_same; c++) {
         is_same = !decides_cost(&axis->key[c]) ||
                   strcmp(axis->value[a * axis->n_keys + c], axis->value[b * axis->n_keys + c]) == 0;

@@ -362,6 +362,9 @@ TEST(a_plan_estimates_points_that_cost_the_same_once) {
     // all keys. They need an estimate only for the case of point 1: it starts from a neighbour, unlike that of point 0
     assert_int_equal(choose_estimated(&stiffness, like), 3 * 8 + 1);
     assert_int_equal(like[3], 2);
+    const struct error_study runs = open_study(moduli, "{of: speed, keys: [nodes, shedding_interval]}");
+    assert_int_equal(error_plan_choose_estimated(runs.sweep, like), 3 * 8);
+    assert_int_equal(choose_estimated(&stiffness, like), 3 * 8 + 1);
     const struct error_study_key *const first = key_of(&stiffness.sweep->point[0], "fish.nodes"),
                                         *const second = key_of(&stiffness.sweep->point[1], "fish.nodes");
     for (int i = 0; i < 4; i++) assert_int_equal(like[second->member[i]], like[first->member[i]]);
