@@ -213,6 +213,15 @@ static void add_body(struct felt *felt, const struct setup *setup, int f, int g,
     }
 }
 
+// the images of all bodies and wakes at a point of fish f
+static void add_images(struct felt *felt, const struct setup *setup, int f, const double at[2], double b2,
+                       double wall) {
+    for (int g = 0; g < 2; g++) {
+        add_body(felt, setup, f, g, at, b2, wall);
+        add_wake(felt, setup, g, at, 2, b2, wall);
+    }
+}
+
 TEST_OF_KERNELS(midpoints_feel_bodies_wakes_and_images) {
     struct setup setup;
     build(&setup, "fluid: {walls: [-0.9]}\n", TWO);
@@ -226,15 +235,32 @@ TEST_OF_KERNELS(midpoints_feel_bodies_wakes_and_images) {
             struct felt felt = {0};
             add_body(&felt, &setup, f, 1 - f, at, b * b, 0);
             add_wake(&felt, &setup, 1 - f, at, 2, b * b, 0);
-            for (int g = 0; g < 2; g++) {
-                add_body(&felt, &setup, f, g, at, b * b, wall);
-                add_wake(&felt, &setup, g, at, 2, b * b, wall);
-            }
+            add_images(&felt, &setup, f, at, b * b, wall);
             // own wake with the own span, unless the force already contains the wake
             if (fish->force == FORCE_PRESSURE) add_wake(&felt, &setup, f, at, 1, b * b, 0);
             NEAR(flow->u[p], felt.u, 1e-12, 1e-11);
             NEAR(flow->v[p], felt.v, 1e-12, 1e-11);
             NEAR(flow->div[p], felt.div, 1e-10, 1e-10);
+        }
+    }
+}
+
+TEST_OF_KERNELS(images_alone_are_those_of_all_bodies_and_wakes) {
+    struct setup setup;
+    build(&setup, "fluid: {walls: [-0.9]}\n", TWO);
+    setup.t = setup.state->t;
+    flow_images(setup.residual->flow, setup.state);
+    const struct flow *const flow = setup.residual->flow;
+    for (int f = 0; f < 2; f++) {
+        const struct fish *const fish = &setup.school->fish[f];
+        for (int k = 0; k < fish->n_edges; k++) {
+            const int p = flow->points[f].first + flow_midpoint(fish, k);
+            const double at[2] = {flow->x[p], flow->y[p]}, b = fish->depth[k] / 4;
+            struct felt images = {0};
+            add_images(&images, &setup, f, at, b * b, 2 * -0.9);
+            NEAR(flow->image_u[p], images.u, 1e-12, 1e-11);
+            NEAR(flow->image_v[p], images.v, 1e-12, 1e-11);
+            NEAR(flow->image_div[p], images.div, 1e-10, 1e-10);
         }
     }
 }

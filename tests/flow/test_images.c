@@ -78,6 +78,30 @@ TEST(rings_and_images_cause_no_flow_through_a_channel) {
     }
 }
 
+TEST(a_ring_with_its_image_is_symmetric_about_the_wall) {
+    enum { N = 6 };
+    struct sources ring, images = {.arena = test_arena()};
+    struct image *image;
+    double x[2 * N], y[2 * N], u[2 * N] = {0}, v[2 * N] = {0}, div[2 * N] = {0};
+    ring_make(&ring, 0.5);
+    for (int i = 0; i < N; i++) {
+        x[i] = x[N + i] = 0.3 * i - 0.7;
+        y[i] = below.y[0] + 0.2 * i;
+        y[N + i] = below.y[0] - 0.2 * i;
+    }
+    const struct kernel_pair pair = kernel_finite.other(1, 0.001);
+    const struct targets at = {.n = 2 * N, .x = x, .y = y, .u = u, .v = v, .div = div};
+    const int n_images = images_find(test_arena(), &below, 1, &image);
+    images_write(&ring, n_images, image, &images);
+    kernel_induce(&pair, &ring, (struct range){0, 1}, &at);
+    kernel_induce(&pair, &images, (struct range){0, 1}, &at);
+    for (int i = 0; i < N; i++) {
+        NEAR(u[N + i], u[i], 1e-14, 1e-12);
+        NEAR(v[N + i], -v[i], 1e-14, 1e-12);
+        NEAR(div[N + i], div[i], 1e-14, 1e-12);
+    }
+}
+
 // the sum over 40 000 images
 TEST(few_images_of_rings_are_the_sum_over_all) {
     enum { MANY = 10000 };

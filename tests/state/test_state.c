@@ -111,6 +111,18 @@ TEST(history_recalls_the_newest_ones_in_order) {
     }
 }
 
+TEST(the_only_sample_can_be_forgotten) {
+    struct sample samples[5];
+    struct history history = {.capacity = 4, .n_slots = 5, .last = -1, .sample = samples};
+    for (int i = 0; i < 3; i++) {
+        state_remember(&history, &(struct sample){.heading = i});
+        assert_int_equal(history.n, 1);
+        NEAR(state_recall(&history, 0)->heading, i, 0, 0);
+        state_forget_newest(&history);
+        assert_int_equal(history.n, 0);
+    }
+}
+
 // ---- rates at events
 
 static double quartic(int i, double t) {
