@@ -177,8 +177,17 @@ run resume run.ckpt -q --threads 2
 check a_killed_run_goes_on same run.nc reference.nc
 
 restore() { cp kept/* .; }
+
+# Change a byte, whatever it is.
+damage() {  # file, place
+    local byte
+    byte=$(od -An -tu1 -j "$2" -N 1 "$1")
+    # shellcheck disable=SC2059 # the byte is an escape of the format
+    printf "\\x$(printf %x $((255 - byte)))" | dd of="$1" bs=1 seek="$2" conv=notrunc status=none
+}
+
 restore
-printf 'x' | dd of=run.ckpt bs=1 seek=3000 conv=notrunc status=none
+damage run.ckpt 3000
 run resume run.ckpt -q
 check a_damaged_checkpoint_falls_back eval 'has err "run.ckpt: cannot be used: damaged behind byte" &&
     has err "; resuming from run.ckpt.previous" && same run.nc reference.nc'
@@ -207,7 +216,7 @@ restore
 truncate -s 3000 run.ckpt run.ckpt.previous
 refused two_damaged_checkpoints 4 '3000 bytes instead of' resume run.ckpt
 restore
-printf 'x' | dd of=run.nc bs=1 seek=$(($(stat -c %s run.nc) * 2 / 3)) conv=notrunc status=none
+damage run.nc $(($(stat -c %s run.nc) * 2 / 3))
 rm run.ckpt.previous
 refused changed_rows 4 'the rows do not match the checkpoint' resume run.ckpt
 restore
