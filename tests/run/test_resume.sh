@@ -138,7 +138,7 @@ refused a_complete_result 2 'run.nc is complete: give a later --end to extend th
 refused no_event 2 "--checkpoint-at: '0.333' is not the time of an event" run swimmer.yaml --checkpoint-at 0.3,0.333
 refused no_time 2 '--max-wall 5: expects HH:MM:SS' run swimmer.yaml --max-wall 5
 printf '%s\n' '#include <stdio.h>' 'unsigned alarm(unsigned n) { fprintf(stderr, "alarm %u", n); return 0; }' >alarm.c
-if "${CC:-cc}" -shared -fPIC -o alarm.so alarm.c 2>/dev/null; then
+if ${CC:-cc} -shared -fPIC -o alarm.so alarm.c 2>/dev/null; then
     LD_PRELOAD=./alarm.so ASAN_OPTIONS=verify_asan_link_order=0 run run swimmer.yaml -q -o timed.nc --max-wall 2:03:04
     check hours_minutes_and_seconds has err "alarm $((2 * 3600 + 3 * 60 + 4))"
 else
