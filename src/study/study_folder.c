@@ -190,6 +190,10 @@ enum status study_folder_watch(struct study_watch *watch, int n_checked) {
     return STATUS_OK;
 }
 
+static bool is_member_of(const struct member_file *member, const struct case_values *study, int number) {
+    return strcmp(member->study, study->merged) == 0 && member->number == number;
+}
+
 /* Check the case and an existing result of a member; list the member unless finished. arena: scratch */
 static enum status plan_member(struct arena *arena, struct study_plan *plan, struct study_refusals *refusals,
                                const struct case_values *study, const char *folder, int number, bool force) {
@@ -206,7 +210,7 @@ static enum status plan_member(struct arena *arena, struct study_plan *plan, str
     // a result that a crash has truncated runs again
     if (read != STATUS_FILE) TRY(read);
     if (exists && read == STATUS_OK) {
-        if (strcmp(member.study, study->merged) == 0 && member.number == number) {
+        if (is_member_of(&member, study, number)) {
             const char *const effective = case_show(arena, values);
             is_finished = member_file_is_complete(&member) && strcmp(member.effective, effective) == 0;
 
@@ -283,6 +287,17 @@ enum status study_plan_create(struct arena *arena, struct study_plan *plan, cons
         TRY(study_folder_watch(&watch, number - first + 1));
     }
     TRY(study_refusals_status(&refusals, study));
+
+    // results of another study go before the members run: a member that fails would leave one of them in its place
+    for (int i = 0; i < plan->n && force; i++) {
+        struct arena *const scratch = arena_create(arena, "the plan of a study");
+        struct member_file member;
+        const char *const path = study_folder_member(scratch, folder, plan->member[i], ".nc");
+        const enum status status = access(path, F_OK) == 0 ? member_file_read(scratch, &member, path) : STATUS_FILE;
+        if (status != STATUS_FILE) TRY(status);
+        if (status == STATUS_OK && !is_member_of(&member, study, plan->member[i])) unlink(path);
+        arena_free(scratch);
+    }
 
     if (is_part) return STATUS_OK;
     struct arena *const scratch = arena_create(arena, "the plan of a study");

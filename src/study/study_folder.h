@@ -80,9 +80,9 @@ struct study_watch {
 enum status study_folder_watch(struct study_watch *watch, int n_checked);
 
 /* Check all members, or a part of them (options->is_part), and list the unfinished members. options->force:
- * accept results of another study in the folder, and remove such results beyond the last member. Other fields in use:
- * folder, progress, stop. Fails with STATUS_CASE (no such members, or members that cannot run), STATUS_FILE (the
- * folder contains results of another study) or STATUS_STOPPED. */
+ * remove results of another study, unless this one is refused. Other fields in use: folder, progress, stop. Fails with
+ * STATUS_CASE (no such members, or members that cannot run), STATUS_FILE (the folder contains results of another study)
+ * or STATUS_STOPPED. */
 enum status study_plan_create(struct arena *arena, struct study_plan *plan, const struct case_values *study,
                               const struct study_options *options);
 

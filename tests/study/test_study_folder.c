@@ -111,9 +111,27 @@ TEST_WITH(members_of_another_study_are_refused_unless_forced, set_up, tear_down)
     set_attribute(f->member[1], "study_case", "format: 1\n");
     assert_refused(f, &f->study, f->member[1]);
     struct study_plan plan;
+    assert_int_equal(access(f->member[1], F_OK), 0);
     assert_int_equal(create_plan(f, &plan, &f->study, 0, -1, 1), STATUS_OK);
     assert_int_equal(plan.n, 1);
     assert_int_equal(plan.member[0], 1);
+
+    // if the member fails, the folder has no result of the other study
+    assert_int_not_equal(access(f->member[1], F_OK), 0);
+}
+
+TEST_WITH(force_keeps_all_results_if_the_study_is_refused, set_up, tear_down) {
+    const struct fixture *const f = *state;
+    struct study_plan plan;
+    struct case_values refused;
+    const char *const assignment =
+        "sweep=[{key: solver.rtol, values: [1e-3, 1e-4]}, {key: time.end, values: [0.02, 0.03]}]";
+    set_attribute(f->member[1], "study_case", "format: 1\n");
+    assert_int_equal(case_parse(&refused, case_text, strlen(case_text), "swimmer.yaml", NULL, 1, &assignment),
+                     STATUS_OK);
+    assert_int_equal(create_plan(f, &plan, &refused, 0, -1, 1), STATUS_CASE);
+    for (int m = 0; m < 3; m++) assert_int_equal(access(f->member[m], F_OK), 0);
+    case_free(&refused);
 }
 
 TEST_WITH(force_runs_the_members_of_another_program_again, set_up, tear_down) {
