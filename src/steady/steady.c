@@ -260,20 +260,22 @@ static enum status steady_find(struct run *run, bool is_static) {
     return write_beats(run);
 }
 
-static enum status refuse_school(const struct school *school) {
+static enum status refuse_school(const struct case_steady *settings, const struct school *school) {
     if (school->gust_profile != GUST_UNIFORM && fabs(school->gust[0]) + fabs(school->gust[1]) > 0) {
         return status_fail(STATUS_CASE,
                            "a gust that travels past the fish has no steady state: run the case in time, or set "
                            "fluid.gust.profile to uniform");
     }
-    return steady_static_applies(school) ? steady_static_refuse(school) : steady_map_refuse(school);
+    if (steady_static_applies(school)) return steady_static_refuse(school);
+    TRY(steady_map_refuse(school));
+    return steady_problem_refuse(settings, school);
 }
 
 enum status steady_refuse(const struct case_values *values) {
     ARENA(arena, NULL, "the school of a case");
     struct school *school;
     TRY(fish_school_create(arena, &school, &values->school));
-    const enum status status = refuse_school(school);
+    const enum status status = refuse_school(&values->steady, school);
     fish_school_free(school);
     return status;
 }
@@ -285,7 +287,7 @@ enum status steady_change(const struct case_values *values, int n, const double 
     struct steady_problem problem;
     TRY(simulate_start(arena, &simulation, values, stop));
     simulation->stop = stop;
-    TRY(refuse_school(simulation->school));
+    TRY(refuse_school(&values->steady, simulation->school));
     TRY(steady_problem_create(&problem, &values->steady, simulation));
     if (problem.n_unknowns != n) {
         return status_fail(STATUS_CASE,
@@ -316,7 +318,7 @@ static enum status find_and_write(struct run *run) {
     run->simulation->trace = options->trace;
     const struct school *const school = run->simulation->school;
     const bool is_static = steady_static_applies(school);
-    TRY(refuse_school(school));
+    TRY(refuse_school(&values.steady, school));
     if (!is_static) TRY(steady_problem_create(&run->problem, &run->values->steady, run->simulation));
     run->problem.progress = report_progress;
     run->problem.data = run;

@@ -50,7 +50,7 @@ struct steady_options {
 };
 
 /* STATUS_CASE, with the reason and the remedy, if a case can have no steady state, without a run: several frequencies,
- * events or gusts that do not divide the beat, bodies without an equilibrium. */
+ * events or gusts that do not divide the beat, free fish that are no formation, bodies without an equilibrium. */
 enum status steady_refuse(const struct case_values *values);
 
 /* Find the steady state of a case and write the result file. If the search fails with STATUS_SOLVER, STATUS_CONTACT or

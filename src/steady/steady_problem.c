@@ -9,8 +9,7 @@
 
 // ---- cases without a steady state
 
-static enum status refuse_case(const struct steady_problem *problem) {
-    const struct school *const school = problem->map.simulation->school;
+enum status steady_problem_refuse(const struct case_steady *settings, const struct school *school) {
     int n_free = 0;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
@@ -35,7 +34,7 @@ static enum status refuse_case(const struct steady_problem *problem) {
         }
     }
 
-    if (n_free == 0 || school->n_fish == 1 || problem->map.is_formation) return STATUS_OK;
+    if (n_free == 0 || school->n_fish == 1 || settings->formation == YES) return STATUS_OK;
     return status_fail(STATUS_CASE,
                        "%d of %d fish swim at independent speeds, so the places change: search for a formation with "
                        "steady.formation: true, or hold all fish with motion.prescribed",
@@ -50,7 +49,7 @@ enum status steady_problem_create(struct steady_problem *problem, const struct c
     *problem = (struct steady_problem){.settings = settings};
     TRY(steady_map_create(&problem->map, simulation));
     problem->map.is_formation = settings->formation == YES;
-    TRY(refuse_case(problem));
+    TRY(steady_problem_refuse(settings, school));
     NEW(arena, problem->unknown, most);
     NEW(arena, problem->pin, most);
     NEW(arena, problem->pinned, most);

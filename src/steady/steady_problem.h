@@ -27,8 +27,12 @@ struct steady_problem {
     void *data;
 };
 
-/* Pose the problem for a simulation at the initial state, in the arena of the simulation. Fails with STATUS_CASE and
- * the reason if the case can have no steady state. */
+/* STATUS_CASE, with the reason and the remedy, if fish that beat can have no steady state: fish in a shear or beside a
+ * wall, fish that change heading, or several fish that are no formation. */
+enum status steady_problem_refuse(const struct case_steady *settings, const struct school *school);
+
+/* Pose the problem for a simulation at the initial state, in the arena of the simulation. Fails as
+ * steady_problem_refuse and steady_map_refuse. */
 enum status steady_problem_create(struct steady_problem *problem, const struct case_steady *settings,
                                   struct simulation *simulation);
 

@@ -27,6 +27,10 @@ run study beats.yaml
 check a_study_of_them_starts_none eval 'test "$code" = 2 -a ! -e beats-study && has err "beats: 2 of 4 members cannot run"'
 run check beats.yaml --set 'sweep=[{key: "fish[*].wave.frequency", values: [1, 2], steady: true}]'
 check all_others_can_run test "$code" = 0
+refused fish_that_part_are_found_before_a_run 2 '2 of 2 fish swim at independent speeds' study beats.yaml \
+    --set 'sweep=[{key: "fish[*].wave.frequency", values: [1, 2], steady: true}]' \
+    --set 'fish=[{force: reactive, nodes: 9}, {force: reactive, nodes: 9, start: {position: [0, 3]}}]'
+check and_no_member_starts test ! -e beats-study
 
 # ---- members whose times do not fit are counted, and the first of them is named
 
