@@ -198,6 +198,44 @@ TEST(a_wake_that_is_far_in_the_middle_may_be_near_at_its_end) {
     BELOW(error, 1);
 }
 
+// A body and its wake ahead on the axis of another body, where the strongest source has the longest reach. The circle
+// around them saves the search beyond the reach, unless a marker without strength, far away, makes the circle large.
+TEST(no_near_source_is_beyond_the_reach) {
+    int n_near_at = 0;
+    for (double ahead = 1.5; ahead < 5; ahead *= 1.15) {
+        struct simulation *const simulation = school_simulation_of(
+            "time: {end: 2, shedding_interval: 0.02}\nwake: {tolerance: 1.0e-8}\n"
+            "defaults: {fish: {nodes: 33, sheet_points: 65, wave: {amplitude: 0}}}\n"
+            "fish: [{}, {start: {position: [%g, 0]}}]\n",
+            ahead);
+        school_run(simulation, 0.1);
+        struct wake *const wake = &simulation->state->wake[1];
+        for (int i = 0; i < wake->n_vortex; i++) {
+            wake->x[i] = ahead + 0.01 * i;
+            wake->y[i] = 0;
+            wake->circulation[i] = i < 2 ? 0 : i;
+        }
+
+        int n[2] = {0, 0};
+        for (int is_large = 0; is_large < 2; is_large++) {
+            if (is_large) wake->y[0] = 1000;
+            wake->version++;
+            flow_velocity(simulation->residual->flow, simulation->state, simulation->state->t, simulation->state->y,
+                          false);
+            assert_true(others_are_selected(simulation->residual->flow));
+            int n_of;
+            const struct near_sources *const of = others_near(simulation->residual->flow, 0, &n_of);
+            for (int i = 0; i < n_of; i++) {
+                // all but the stretch at that marker
+                if (of[i].fish == 1) n[is_large] += of[i].wake.n - (of[i].wake.n > 0 && of[i].wake.first == 0);
+            }
+        }
+        assert_int_equal(n[0], n[1]);
+        n_near_at += n[0] > 0;
+    }
+    assert_in_range(n_near_at, 2, 8);  // of 9
+}
+
 // a shift of everything leaves every source as far as it was
 TEST(what_is_far_does_not_depend_on_the_origin) {
     struct simulation *const simulation = swum("finite", 0.8);
