@@ -720,9 +720,10 @@ static enum status fail_with_branch(const struct walk *walk, enum status status)
         reason = arena_text(scratch, "stopped %s; --from %s/%s goes on from the last state",
                             simulate_stopped_by(walk->options->stop), folder, last->file);
     }
-    return status_fail(status, "%s; %d steady state%s found, %s %s = %.6g with the %s: %s/study.nc", reason, n,
-                       n > 1 ? "s were" : " was", n > 1 ? "up to" : "at", walk->options->key, last->value,
-                       stability_of(scratch, branch, last), folder);
+    // the errors of a case end with a line of the case
+    return status_fail(status, "%s%s%d steady state%s found, %s %s = %.6g with the %s: %s/study.nc", reason,
+                       strchr(reason, '\n') ? "\n" : "; ", n, n > 1 ? "s were" : " was", n > 1 ? "up to" : "at",
+                       walk->options->key, last->value, stability_of(scratch, branch, last), folder);
 }
 
 // ---- the folder

@@ -74,6 +74,9 @@ check runs_decay_and_grow_on_the_two_sides python "$root/tests/app/threshold_run
 
 # ---- a result is kept, and what cannot be found leaves what was found before
 
+run steady flag.yaml --threshold time.shedding_interval=0.01:0.05 -o interval -q
+check what_was_found_follows_the_errors_of_a_case grep -q '^1 steady state was found, at time.shedding_interval = 0.01 with the growth ' err
+
 refused another_result_is_kept 4 'flag/study.nc exists: replace it with --force' \
     steady flag.yaml --threshold "$key=50000:120000" -o flag
 run steady flag.yaml --threshold "$key=50000:120000" -o flag -q --force
