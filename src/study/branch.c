@@ -728,17 +728,22 @@ static enum status fail_with_branch(const struct walk *walk, enum status status)
 
 // ---- the folder
 
-/* Remove the files of an earlier branch. study: path of its study.nc */
-static void remove_earlier(const struct walk *walk, const char *study) {
-    glob_t found;
+/* Remove the files of an earlier branch, unless one of them is the start of this one. study: path of its study.nc */
+static enum status remove_earlier(const struct walk *walk, const char *study) {
+    glob_t found = {0};
+    enum status status = STATUS_OK;
     const char *const pattern = study_folder_path(walk->arena, walk->options->folder, "state-[0-9][0-9][0-9].nc");
-    if (glob(pattern, GLOB_NOSORT, NULL, &found) == 0) {
-        for (size_t i = 0; i < found.gl_pathc; i++) {
-            if (target_is(found.gl_pathv[i], TARGET_NETCDF)) unlink(found.gl_pathv[i]);
-        }
-        globfree(&found);
+    const char *const start = walk->options->start;
+    if (glob(pattern, GLOB_NOSORT, NULL, &found) != 0) found.gl_pathc = 0;
+    for (size_t i = 0; i < found.gl_pathc && start && status == STATUS_OK; i++) {
+        status = target_refuse_input(found.gl_pathv[i], start);
     }
-    if (target_is(study, TARGET_NETCDF)) unlink(study);
+    for (size_t i = 0; i < found.gl_pathc && status == STATUS_OK; i++) {
+        if (target_is(found.gl_pathv[i], TARGET_NETCDF)) unlink(found.gl_pathv[i]);
+    }
+    globfree(&found);
+    if (status == STATUS_OK && target_is(study, TARGET_NETCDF)) unlink(study);
+    return status;
 }
 
 /* Refuse a key that does not vary continuously, and a case without a steady state or without its stability at either
@@ -792,8 +797,8 @@ enum status branch_follow(struct arena *arena, const struct case_values *values,
     }
     TRY(study_folder_create(options->folder));
     TRY(durable_claim_take(&claim, study));
-    remove_earlier(walk, study);
-    enum status status = follow(walk);
+    enum status status = remove_earlier(walk, study);
+    if (status == STATUS_OK) status = follow(walk);
     if (status == STATUS_OK) status = options->to_threshold ? locate_first(walk) : locate_all(walk);
     if (status != STATUS_OK) fail_with_branch(walk, status);
     durable_claim_release(&claim);

@@ -196,13 +196,13 @@ static bool is_member_of(const struct member_file *member, const struct case_val
 
 /* Check the case and an existing result of a member; list the member unless finished. arena: scratch */
 static enum status plan_member(struct arena *arena, struct study_plan *plan, struct study_refusals *refusals,
-                               const struct case_values *study, const char *folder, int number, bool force) {
+                               const struct case_values *study, const struct study_options *options, int number) {
     struct case_values *values;
     struct member_file member = {.status = ""};
     bool is_finished = false;
     const enum status status = study_folder_case(arena, &values, study, number);
     if (status != STATUS_OK) return study_refusals_add(refusals, study, number, status);
-    const char *const path = study_folder_member(arena, folder, number, ".nc");
+    const char *const path = study_folder_member(arena, options->folder, number, ".nc");
     const bool exists = access(path, F_OK) == 0;
     if (exists) TRY(target_check(path, TARGET_NETCDF, true));
     const enum status read = exists ? member_file_read(arena, &member, path) : STATUS_OK;
@@ -217,8 +217,8 @@ static enum status plan_member(struct arena *arena, struct study_plan *plan, str
             // force also replaces the result of another program
             const size_t length = strlen(version_short());
             const bool is_own = strncmp(member.source, version_short(), length) == 0 && member.source[length] == ',';
-            if (force && !is_own) is_finished = false;
-        } else if (!force) {
+            if (options->force && !is_own) is_finished = false;
+        } else if (!options->force) {
             return status_fail(STATUS_FILE,
                                "%s is a result of another study, or the case has changed since: choose another folder "
                                "with -o, or replace the results with --force",
@@ -230,6 +230,7 @@ static enum status plan_member(struct arena *arena, struct study_plan *plan, str
     const bool is_searched = !is_finished && sweep_is_steady(study);
     TRY(study_refusals_add(refusals, study, number, is_searched ? steady_refuse(values) : STATUS_OK));
     if (is_finished) return STATUS_OK;
+    if (options->from) TRY(target_refuse_input(path, options->from));
     plan->member[plan->n++] = number;
     if (values->school.threads > plan->max_threads) plan->max_threads = values->school.threads;
     return STATUS_OK;
@@ -282,7 +283,7 @@ enum status study_plan_create(struct arena *arena, struct study_plan *plan, cons
     struct study_watch watch = {.options = options, .what = "checked", .n = plan->n_members};
     for (int number = first; number <= last; number++) {
         struct arena *const scratch = arena_create(arena, "the plan of a study");
-        TRY(plan_member(scratch, plan, &refusals, study, folder, number, force));
+        TRY(plan_member(scratch, plan, &refusals, study, options, number));
         arena_free(scratch);
         TRY(study_folder_watch(&watch, number - first + 1));
     }

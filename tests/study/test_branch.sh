@@ -25,6 +25,10 @@ run steady plates.yaml --from "plates-branch/$last" --set "$key=0.081" -o again.
 check a_search_finds_the_unstable_state_too test "$code" = 0
 check and_finds_it_at_the_same_place python "$root/tests/study/same_place.py" "plates-branch/$last" again.nc
 
+refused a_branch_does_not_remove_the_state_it_starts_from 4 "$last is the file that is read: choose another name with -o" \
+    steady plates.yaml --from "plates-branch/$last" --continue "$key=0.081:0.09" --force
+check nor_the_others test -e "plates-branch/$last" -a -e plates-branch/state-000.nc -a -e plates-branch/study.nc
+
 run info plates-branch/study.nc
 check info_summarises_a_branch grep -qF "$key" out
 # of one plate, which has no place

@@ -134,6 +134,16 @@ TEST_WITH(force_keeps_all_results_if_the_study_is_refused, set_up, tear_down) {
     case_free(&refused);
 }
 
+TEST_WITH(the_state_from_which_a_study_starts_is_not_removed, set_up, tear_down) {
+    const struct fixture *const f = *state;
+    const struct study_options options = {.folder = f->folder, .force = true, .from = f->member[1]};
+    struct study_plan plan;
+    for (int m = 0; m < 2; m++) set_attribute(f->member[m], "study_case", "format: 1\n");
+    assert_int_equal(study_plan_create(f->arena, &plan, &f->study, &options), STATUS_FILE);
+    assert_non_null(strstr(status_message(), "is the file that is read"));
+    for (int m = 0; m < 3; m++) assert_int_equal(access(f->member[m], F_OK), 0);
+}
+
 TEST_WITH(force_runs_the_members_of_another_program_again, set_up, tear_down) {
     const struct fixture *const f = *state;
     struct study_plan plan;
