@@ -1127,8 +1127,11 @@ TEST(a_state_that_no_body_can_have_is_refused) {
     for (int i = 0; i < 4; i++) wrong[14 + i] = x[14 + i];
     wrong[16] = x[12];
     wrong[17] = x[13];
-    assert_int_equal(shoal_set_state(run, 0, wrong, NULL), SHOAL_USAGE);
-    assert_non_null(strstr(shoal_message(), "joint 6 of a would turn by"));
+    for (int side = 0; side < 2; side++) {
+        assert_int_equal(shoal_set_state(run, 0, wrong, NULL), SHOAL_USAGE);
+        assert_non_null(strstr(shoal_message(), "joint 6 of a would turn by"));
+        for (int i = 1; i < 18; i += 2) wrong[i] = -wrong[i];
+    }
     memcpy(wrong, x, sizeof wrong);
     wrong[0] = x[4];
     wrong[1] = x[5];
