@@ -111,7 +111,8 @@ class Frames(Results):
         q = np.clip((t - ta) / (tb - ta), 0, 1) if b > a else 0.0
         parts = [self.wake_of(fish, t, q, a, b) for fish in range(self.n_fish)]
         position, circulation, birth = (np.concatenate(part) for part in zip(*parts))
-        return position, circulation * self.remaining(t - birth)
+        aged = np.repeat(self.aged(), [part[2].size for part in parts])
+        return position, circulation * self.remaining(t - birth + aged)
 
     def wake_of(self, fish, t, q, a, b):
         """The vortices of a fish between two rows with a wake, by their time of birth: positions, circulations, births."""

@@ -69,7 +69,13 @@ class Results:
         birth = self.read("wake_birth", row).ravel()
         position = self.read("wake_x", row).reshape(-1, 2)
         used = np.isfinite(circulation)
-        return position[used], circulation[used] * self.remaining(self.time[row] - birth[used])
+        aged = np.repeat(self.aged(), circulation.size // self.n_fish)
+        return position[used], circulation[used] * self.remaining(self.time[row] - birth[used] + aged[used])
+
+    def aged(self):
+        """By so much a vortex of each fish counts as older than it is (n_fish): fish.wake_lifetime."""
+        part = self["wake_part"] if "wake_part" in self.data.variables else np.ones(self.n_fish)
+        return (1 - part) * float(self["wake_lifetime"])
 
     def remaining(self, age):
         """The part of its circulation that a vortex of some age still has: doc/model.md, section 8."""

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/mathematics.h"
 #include "base/text.h"
 #include "case/case.h"
 #include "case/case_merge.h"
@@ -673,6 +674,17 @@ static void check_law_place(const struct check *check) {
                 "'%.60s' holds a place beside this fish in turn: let one of them lead", control->of);
 }
 
+/* Refuse a wake that would end before it decays, or before the next marker. */
+static void check_wake_of_fish(const struct check *check) {
+    const struct wake_parameters *const wake = &check->values->school.wake;
+    const double interval = check->values->school.shedding_interval,
+                 lives = check->fish->wake_lifetime * wake->lifetime;
+    const double least = larger(wake->decay, interval);
+    complain_if(lives < least && least <= wake->lifetime, check, "fish.wake_lifetime",
+                "%g of wake.lifetime is %g s, less than %s, %g s: choose a larger fraction", check->fish->wake_lifetime,
+                lives, wake->decay > interval ? "wake.decay" : "time.shedding_interval", least);
+}
+
 static void check_control(const struct check *check) {
     const struct fish_parameters *const fish = check->fish;
     const struct control_parameters *const control = &fish->control;
@@ -829,6 +841,7 @@ void case_check(const struct case_values *values, const struct case_tree *tree, 
         check_drag(&check);
         check_pressure(&check);
         check_motion(&check);
+        check_wake_of_fish(&check);
         check_control(&check);
     }
 }

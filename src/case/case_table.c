@@ -22,6 +22,8 @@
     { min, max, false, false }
 #define FROM_BELOW(min, max) \
     { min, max, false, true }
+#define ABOVE_UP_TO(min, max) \
+    { min, max, true, false }
 #define BETWEEN(min, max) \
     { min, max, true, true }
 // up to 1e6 degrees a double resolves angles to 1e-9 degrees
@@ -390,6 +392,9 @@ const struct key case_table[] = {
      .meaning = "number of vortices of the bound sheet", .synonyms = "vortices panels bound_vortices",
      .published = "21", .derived = "2 nodes - 1, at least 33; with pressure.span finite at least 1 + 5 L/w",
      .derive = derive_sheet_points, .cause = "fish.body.depth"},
+    {"fish.wake_lifetime", REAL, IN_FISH(wake_lifetime), "1", ABOVE_UP_TO(0, 1), "",
+     .meaning = "lifetime of the wake of this fish over wake.lifetime: lets the wakes of a line end at one place "
+                "(doc/steady.md)"},
 
     {"fish.body.profile", CHOICE, IN_FISH(body.profile), "joukowski", ANY, "",
      .meaning = "thickness along the body: a Joukowski foil, uniform, or the lists thickness_table and depth_table",

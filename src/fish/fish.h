@@ -94,6 +94,7 @@ struct fish {
     double frequency;                                   /* of the beat, Hz; 0: none */
     double period;                                      /* averaging period, s; 0: no means */
     double total_mass;                                  /* kg */
+    double wake_part;                                   /* lifetime of its wake over that of the school */
 
     double *arc;               /* arc coordinate of the nodes, m                          (n_nodes) */
     double *mass;              /* kg                                                      (n_nodes) */

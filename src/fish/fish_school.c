@@ -181,6 +181,7 @@ static void fish_fill(const struct school *school, int f, const struct school_pa
     fish->n_edges = from->nodes - 1;
     fish->n_joints = from->nodes - 2;
     fish->n_sheet = from->sheet_points;
+    fish->wake_part = from->wake_lifetime;
     fish->n_control = from->sheet_points - 1;
     fish->length = from->length;
     fish->edge_length = fish->length / fish->n_edges;

@@ -156,6 +156,7 @@ struct fish_parameters {
     char *name;
     double length; /* m */
     int nodes, reference_nodes, sheet_points;
+    double wake_lifetime; /* fraction of wake.lifetime */
     struct body_parameters body;
     struct wave_parameters wave;
     enum force force;           /* of the fluid on the body */

@@ -354,7 +354,7 @@ void flow_field(struct flow *flow, const struct state *state, const struct targe
 // how many vortices or markers of a wake, the oldest ones, have lost some strength
 static int count_decaying(const struct wake *wake, const struct school *school, double t) {
     int n = 0;
-    while (n < wake->n_vortex && wake_strength(school, t - wake->birth[n]) < 1) n++;
+    while (n < wake->n_vortex && wake_strength(school, wake_age(wake, n, t)) < 1) n++;
     return n;
 }
 

@@ -136,7 +136,7 @@ static struct sensor_source sensor_wake_source(const struct sensor_targets *at, 
     const struct sources *const from = &points->sources;
     const int older = points->older[i], newer = points->newer[i];
     const double xi = newer == older ? 0 : points->xi[i];
-    const double decay = wake_strength_within(at->flow->school, at->state->t - wake->birth[newer], 0);
+    const double decay = wake_strength_within(at->flow->school, wake_age(wake, newer, at->state->t), 0);
     const double rate = ((1 - xi) * wake->rate[newer] + xi * wake->rate[older]) * decay;
     double line[2];
     sheet_line(&at->flow->fish[g].wake, points, i, line);

@@ -90,6 +90,11 @@ enum status result_reader_open(struct arena *arena, struct result_reader **opene
         reader->has_pressure |= fabs(force[f] - FORCE_PRESSURE) < 0.5;
     }
 
+    // earlier files have wakes of one lifetime
+    NEW(arena, reader->wake_part, n_fish);
+    for (size_t f = 0; f < n_fish; f++) reader->wake_part[f] = 1;
+    if (netcdf_has(&reader->file, "wake_part")) TRY(result_reader_row(reader, "wake_part", 0, reader->wake_part));
+
     // an outline needs the edges between the nodes
     const size_t n_nodes = reader->length[NODE], n_edges = reader->length[EDGE];
     TRY(read_counts(arena, reader, "n_nodes", 4, n_edges < n_nodes ? n_edges + 1 : n_nodes, &reader->n_nodes));

@@ -13,6 +13,7 @@ struct result_reader {
     char **name;                        /* of the fish                                 (FISH) */
     int *n_nodes, *n_sheet;             /* of each fish                                (FISH) */
     bool *has_mean_section;             /* edge_thickness is a mean over the edge      (FISH) */
+    double *wake_part;                  /* lifetime of its wake over wake_lifetime     (FISH) */
     bool has_pressure;                  /* a fish has force: pressure */
     double wall_y[2];                   /* of the walls, m                             (length[WALL]) */
     double *scratch;                    /* (2 FISH) */

@@ -85,6 +85,8 @@ const struct result_variable result_table[] = {
      .long_name = "time between the release of two vortices"},
     {"wake_lifetime",         {NONE},                 RESULT_REAL,    "s",      IN_SCHOOL(lifetime),
      .long_name = "age at which a free vortex is removed"},
+    {"wake_part",             {FISH},                 RESULT_REAL,    "1",      IN_FISH(wake_part),
+     .long_name = "lifetime of the wake of the fish over wake_lifetime"},
     {"wake_decay",             {NONE},                 RESULT_REAL,    "s",      IN_SCHOOL(decay),
      .long_name = "time before removal over which a free vortex decays"},
     {"wall_y",                {WALL},                 RESULT_REAL,    "m",      IN_SCHOOL(walls.y),

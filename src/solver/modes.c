@@ -71,11 +71,11 @@ static void put_labels(const struct modes *modes, int f, double complex lambda, 
                        double factor) {
     struct wake *const wake = &modes->state->wake[f];
     const struct school *const school = modes->residual->school;
-    const double interval = school->interval;
+    const double interval = school->interval, lifetime = school->lifetime - wake->aged;
     // a wake of full length that decays by itself needs no window
     const int length = wake_length(wake, interval);
-    const bool has_all = (length + 2) * interval >= school->lifetime;
-    const bool is_whole = has_all && school->decay >= 0.99 * window * school->lifetime;
+    const bool has_all = (length + 2) * interval >= lifetime;
+    const bool is_whole = has_all && school->decay >= 0.99 * window * lifetime;
     const double complex step = cexp(-lambda * interval);
     double complex exact = cexp(-lambda * tau), label = exact;
     wake->shed_before = modes->shed[f] + factor * (is_imaginary ? cimag(exact) : creal(exact));

@@ -76,7 +76,7 @@ static void impulse_add_wake(struct impulse_moments *sum, const struct wake *wak
 
         // what does not decay does not change: nothing from the oldest marker of this stretch on
         const int oldest = wake->has_markers && j > 0 ? j - 1 : j;
-        if (of.kind != STRENGTHS && !(wake_strength_within(school, t - wake->birth[oldest], 1) < 1)) return;
+        if (of.kind != STRENGTHS && !(wake_strength_within(school, wake_age(wake, oldest, t), 1) < 1)) return;
 
         if (!wake->has_markers) {
             const double part = part_of(&of, wake_part_of_label, true, wake, school, t, j);

@@ -33,6 +33,7 @@ struct state *state_create(struct arena *parent, const struct school *school) {
         const struct fish *const fish = &school->fish[f];
         wake_create(arena, &state->wake[f], 16);
         state->wake[f].forms = forms;
+        state->wake[f].aged = (1 - fish->wake_part) * school->lifetime;
         state->wake[f].has_markers = school->shedding == SHEDDING_SHEET;
 
         struct history *const history = &state->history[f];
@@ -161,6 +162,7 @@ const struct state_row state_table[] = {
 
     {"wake.arena", OF_WAKE(STATE_UNKEPT, arena), STATE_NO_ARRAY},
     {"wake.forms", OF_WAKE(STATE_UNKEPT, forms), STATE_NO_ARRAY},
+    {"wake.aged", OF_WAKE(STATE_UNKEPT, aged), STATE_NO_ARRAY},
     {"wake.version", OF_WAKE(STATE_UNKEPT, version), STATE_NO_ARRAY},
     {"wake.n_turns", OF_WAKE(STATE_UNKEPT, n_turns), STATE_NO_ARRAY},
     {"wake.n_vortex", OF_WAKE(STATE_INTEGER, n_vortex), STATE_NO_ARRAY},

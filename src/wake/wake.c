@@ -81,6 +81,10 @@ void wake_set_tail(struct wake *wake, const double velocity[2], const double tan
     memcpy(wake->tail_tangent, tangent, sizeof wake->tail_tangent);
 }
 
+double wake_age(const struct wake *wake, int i, double t) {
+    return t - wake->birth[i] + wake->aged;
+}
+
 static double along_path(double x, double u, double u_before, double tau, double interval) {
     return x + tau * u + tau * tau / (2 * interval) * (u - u_before);
 }
@@ -128,24 +132,24 @@ void wake_places(const struct wake *wake, double interval, double tau, double *r
 
 double wake_part_of_label(const struct wake *wake, const struct school *school, double t, double q, int i) {
     if (wake->has_markers && !school->finite) return 1;
-    return wake_strength_within(school, t - wake->birth[i], q);
+    return wake_strength_within(school, wake_age(wake, i, t), q);
 }
 
 void wake_parts_of_labels(const struct wake *wake, const struct school *school, double t, double q, double *part) {
     // from the first whole label on all are whole, because births are in order
     int i = 0;
-    for (; i < wake->n_vortex && !is_whole(school, t - wake->birth[i]); i++) {
+    for (; i < wake->n_vortex && !is_whole(school, wake_age(wake, i, t)); i++) {
         part[i] = wake_part_of_label(wake, school, t, q, i);
     }
     for (; i < wake->n_vortex; i++) part[i] = 1;
 }
 
 double wake_part_of_stretch(const struct wake *wake, const struct school *school, double t, double q, int j) {
-    return school->finite ? 1 : wake_strength_within(school, t - wake->birth[j + 1], q);
+    return school->finite ? 1 : wake_strength_within(school, wake_age(wake, j + 1, t), q);
 }
 
 double wake_part_of_marker(const struct wake *wake, const struct school *school, double t, double q, int i) {
-    return school->finite ? 1 : wake_strength_within(school, t - wake->birth[i] - school->interval / 2, q);
+    return school->finite ? 1 : wake_strength_within(school, wake_age(wake, i, t) - school->interval / 2, q);
 }
 
 double wake_strength_of(const struct wake *wake, const struct school *school, double t, double tau, int i) {
@@ -181,7 +185,7 @@ void wake_remove_old(struct wake *wake, const struct school *school, double t) {
     // the age of a stretch is the age of the newer marker
     const int newer = wake->has_markers;
     int n = 0;
-    while (n + newer < wake->n_vortex && t - wake->birth[n + newer] > school->lifetime - rounding) {
+    while (n + newer < wake->n_vortex && wake_age(wake, n + newer, t) > school->lifetime - rounding) {
         wake->removed += wake_source(wake, n++);
     }
     if (n == 0) return;

@@ -31,6 +31,7 @@ struct wake {
     double *circulation;         /* m2 s-1, constant after release; for a marker: the label (n_vortex) */
     double *rate, *rate_before;  /* rate of labels at the same events, m2 s-2; 0 without rings (n_vortex) */
     double *birth;               /* time of release, s                                (n_vortex) */
+    double aged;                 /* by so much a vortex counts as older than it is, s: constant, see wake_age */
     bool has_markers;            /* the queue holds markers of a sheet: sheet.h */
     int n_old;                   /* number of old stretches, the oldest ones: stretch.h */
     int n_added;                 /* number of vortices added from outside so far: at most wake_spare */
@@ -55,6 +56,10 @@ void wake_release(struct wake *wake, double x, double y, double circulation, dou
 
 /* Positions of all vortices or markers at the time tau after the last event (n_vortex). */
 void wake_places(const struct wake *wake, double interval, double tau, double *restrict x, double *restrict y);
+
+/* The age of vortex or marker i at time t as its decay counts it: of a wake with a shorter lifetime than wake.lifetime
+ * (fish.wake_lifetime) the time since the release and the difference of the lifetimes. */
+double wake_age(const struct wake *wake, int i, double t);
 
 /* The label of marker i, or circulation of vortex i, without decay; of all (n_vortex). */
 double wake_label(const struct wake *wake, int i, double interval, double tau);
@@ -92,8 +97,8 @@ double wake_circulation(const struct wake *wake, int i);
 int wake_n_sources(const struct wake *wake);
 double wake_source(const struct wake *wake, int i);
 
-/* Remove the vortices with an age of at least a lifetime at time t; of markers such stretches. These have no strength,
- * except with impulsive shedding. */
+/* Remove the vortices with an age (wake_age) of at least a lifetime at time t; of markers such stretches. These have no
+ * strength, except with impulsive shedding. */
 void wake_remove_old(struct wake *wake, const struct school *school, double t);
 
 /* Remove marker i from the sheet: the stretches on both sides become one. */

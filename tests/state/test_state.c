@@ -273,7 +273,7 @@ TEST(every_field_has_a_row) {
 
 TEST(all_but_the_memory_is_kept) {
     static const char memory[] =
-        " arena wake.arena wake.forms wake.version wake.n_turns wake.capacity history.capacity ";
+        " arena wake.arena wake.forms wake.aged wake.version wake.n_turns wake.capacity history.capacity ";
     for (int i = 0; i < state_table_n; i++) {
         const char *const name = arena_text(test_arena(), " %s ", state_table[i].name);
         assert_int_equal(state_table[i].type == STATE_UNKEPT, strstr(memory, name) != NULL);

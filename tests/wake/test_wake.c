@@ -109,6 +109,27 @@ TEST(strength_fades_as_the_ramp_over_the_last_part_of_life) {
 }
 
 // between two events the strength is linear, also in the interval in which the decay begins
+TEST(wake_of_a_shorter_lifetime_fades_alike_and_ends_earlier) {
+    struct setup setup = setup_of(SMALL
+                                  "wake: {lifetime: 1, decay: 0.4}\n"
+                                  "fish: [{}, {wake_lifetime: 0.6, start: {position: [3, 0]}}]\n");
+    for (int f = 0; f < 2; f++) {
+        struct wake *const wake = &setup.state->wake[f];
+        const double lifetime = f == 0 ? 1 : 0.6;
+        for (int i = 0; i < 3; i++) wake_release(wake, 0, 0, i, 0.02 * i);
+        for (double before = 0.02; before < lifetime; before += 0.02) {
+            const double part = wake_part_of_label(wake, setup.school, lifetime - before, 0, 0);
+            NEAR(part, wake_strength(setup.school, 1 - before), 1e-12, 0);
+        }
+
+        // a stretch goes with its newer marker, whose age is a lifetime
+        wake_remove_old(wake, setup.school, lifetime);
+        assert_int_equal(wake->n_vortex, 3);
+        wake_remove_old(wake, setup.school, lifetime + 0.02);
+        assert_int_equal(wake->n_vortex, 2);
+    }
+}
+
 TEST(strength_within_an_interval_joins_the_strengths_at_its_ends) {
     static const char *const lives[] = {
         "shedding: continuous, lifetime: 1, decay: 0.4",   "shedding: continuous, lifetime: 1, decay: 0.1",
