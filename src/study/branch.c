@@ -16,6 +16,7 @@
 #include "result/target.h"
 #include "run/simulate.h"
 #include "solver/newton.h"
+#include "steady/steady_start.h"
 #include "study/convergence.h"
 #include "study/member_file.h"
 #include "study/study_file.h"
@@ -746,8 +747,8 @@ static enum status remove_earlier(const struct walk *walk, const char *study) {
     return status;
 }
 
-/* Refuse a key that does not vary continuously, and a case without a steady state or without its stability at either
- * end: before a folder is created. */
+/* Refuse a key that does not vary continuously, a case without a steady state or without its stability at either end,
+ * and a start that is no steady state: before a folder is created, or an earlier branch removed. */
 static enum status refuse(struct walk *walk) {
     const struct branch_options *const options = walk->options;
     ARENA(scratch, walk->arena, "the ends");
@@ -778,7 +779,9 @@ static enum status refuse(struct walk *walk) {
     TRY(case_at(walk, scratch, &to, options->to));
     TRY(steady_refuse(to));
     TRY(case_at(walk, scratch, &from, options->from));
-    return steady_refuse(from);
+    TRY(steady_refuse(from));
+    struct fish_parameters *fish;
+    return options->start ? steady_start_read(scratch, options->start, &from->school, &fish) : STATUS_OK;
 }
 
 enum status branch_follow(struct arena *arena, const struct case_values *values, const struct branch_options *options,

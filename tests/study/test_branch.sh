@@ -27,6 +27,7 @@ check and_finds_it_at_the_same_place python "$root/tests/study/same_place.py" "p
 
 refused a_branch_does_not_remove_the_state_it_starts_from 4 "$last is the file that is read: choose another name with -o" \
     steady plates.yaml --from "plates-branch/$last" --continue "$key=0.081:0.09" --force
+refused nor_do_wrong_starts 4 'none.nc: cannot be read' steady plates.yaml --from none.nc --continue "$key=0.081:0.09" --force
 check nor_the_others test -e "plates-branch/$last" -a -e plates-branch/state-000.nc -a -e plates-branch/study.nc
 
 run info plates-branch/study.nc
