@@ -20,6 +20,8 @@ FAILED = 1.5  # what a point without a steady state counts as, over the largest 
 
 
 def _steady_name(quantity: str) -> str:
+    if not isinstance(quantity, str):
+        raise TypeError(f"optimize: a quantity is a name such as 'cost_of_transport', not {kind(quantity)}")
     return quantity if quantity.startswith("steady_") else f"steady_{quantity}"
 
 
@@ -196,11 +198,30 @@ class _Search:
         return self.slopes[x][name]
 
 
+def _pair(value, what: str) -> tuple:
+    """(least, most), each a number or None."""
+    if not isinstance(value, (tuple, list, np.ndarray)) or len(value) != 2:
+        raise CaseError(f"{what}: expects (least, most), not {value!r}")
+    return tuple(None if one is None else number_of(one, what) for one in value)
+
+
+def _asked(value, what: str):
+    """The value of subject_to: a number, or (least, most) of which one may be None."""
+    if value is not None and np.ndim(value) == 0:
+        return number_of(value, what)
+    least, most = _pair(value, what)
+    if (least is None and most is None) or None not in (least, most) and not least < most:
+        raise CaseError(f"{what}: expects a value or (least, most), not {value!r}")
+    return least, most
+
+
 def _limits(bounds, keys, names, first):
     """Bounds of the logarithms of the numbers over their starts."""
     if bounds is None:
         bounds = {}
     if not isinstance(bounds, Mapping):
+        if not isinstance(bounds, (tuple, list, np.ndarray)):
+            raise TypeError(f"optimize: bounds is a dict of (least, most), or a list of them, not {kind(bounds)}")
         if len(bounds) != len(keys):
             raise CaseError(f"optimize: {len(bounds)} bounds for {len(keys)} numbers: give (least, most) for each, or a dict")
         bounds = dict(zip(names, bounds))
@@ -209,9 +230,8 @@ def _limits(bounds, keys, names, first):
         raise CaseError(f"optimize: bounds of {', '.join(map(str, unknown))}, which is not in over: {', '.join(names)}")
     limits = []
     for key, name, start in zip(keys, names, first):
-        low, high = bounds.get(name, sorted((start / FACTOR, start * FACTOR)))
-        low, high = (number_of(one, f"a bound of {name}") for one in (low, high))
-        if not (low / start > 0 and high / start > 0 and low < high):
+        low, high = _pair(bounds.get(name, sorted((start / FACTOR, start * FACTOR))), f"optimize: bounds of {name}")
+        if low is None or high is None or not (low / start > 0 and high / start > 0 and low < high):
             raise CaseError(f"optimize: bounds of {name}: expects (least, most) of the sign of its start, {start:g}")
         ends = sorted(np.log([low / start, high / start]))
         if not ends[0] <= 0 <= ends[1]:
@@ -244,14 +264,18 @@ def optimize(case, quantity: str, over, bounds=None, subject_to: Mapping | None 
         from scipy import optimize as minimisers
     except ImportError as wrong:
         raise ImportError("shoal.optimize needs scipy: apt install python3-scipy, or pip install scipy") from wrong
-    over = [over] if isinstance(over, str) else list(over)
-    if not over:
+    over = [over] if isinstance(over, str) else over
+    if not isinstance(over, (tuple, list)) or not over:
         raise CaseError("optimize: over is a list of at least one number of the case, such as ['wave.frequency']")
     if method not in ("SLSQP", "trust-constr"):
         raise CaseError(f"optimize: method is SLSQP or trust-constr, not {method!r}")
     if subject_to is not None and not isinstance(subject_to, Mapping):
         raise TypeError(f"subject_to is a dict of quantities with their values, not {kind(subject_to)}")
-    wanted = {_steady_name(name): value for name, value in (subject_to or {}).items()}
+    wanted = {_steady_name(name): _asked(value, f"optimize: subject_to of {name}") for name, value in (subject_to or {}).items()}
+    if not number_of(tolerance, "optimize: tolerance") > 0:
+        raise CaseError(f"optimize: tolerance is above 0, not {tolerance}")
+    if type(most) is not int or most < 1:
+        raise CaseError(f"optimize: most is a whole number of iterations above 0, not {most!r}")
     target = _steady_name(quantity)
     if target in wanted:
         raise CaseError(f"optimize: {quantity} is the quantity itself: it cannot be in subject_to")
@@ -261,7 +285,10 @@ def optimize(case, quantity: str, over, bounds=None, subject_to: Mapping | None 
     path = _path(path, "path")
     if os.path.lexists(path) and not overwrite:
         raise FileError(f"{path}: exists: give another path, or overwrite=True")
-    os.makedirs(path, exist_ok=True)
+    try:
+        os.makedirs(path, exist_ok=True)
+    except OSError as wrong:
+        raise FileError(f"{path}: cannot create this folder ({wrong.strerror}): give another path") from wrong
     for name in os.listdir(path):
         if re.fullmatch(r"state-\d+\.nc|history\.csv", name):
             os.remove(os.path.join(path, name))
@@ -270,6 +297,8 @@ def optimize(case, quantity: str, over, bounds=None, subject_to: Mapping | None 
     limits = _limits(bounds, search.keys, over, search.first)
     start = search.history[0]
     sign, unit = (-1 if maximum else 1), abs(start[target])
+    if not unit > 0:
+        raise CaseError(f"optimize: {quantity} is {start[target]:g} at the start, so it has no relative change: start from other numbers")
 
     def value(x):
         found = search.values(x)
@@ -280,11 +309,10 @@ def optimize(case, quantity: str, over, bounds=None, subject_to: Mapping | None 
 
     conditions = []
     for name, asked in wanted.items():
-        is_range = isinstance(asked, (tuple, list))
+        is_range = isinstance(asked, tuple)
         for which, one in enumerate(asked if is_range else [asked]):
             if one is None:
                 continue
-            one = number_of(one, f"subject_to[{name!r}]")
             scale, side = abs(one) or abs(start[name]) or 1.0, (-1 if is_range and which == 1 else 1)
 
             def far(x, name=name, one=one, scale=scale, side=side):

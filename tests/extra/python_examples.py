@@ -32,6 +32,11 @@ def example(name):
 SWIMMER = {"time": {"end": 1, "shedding_interval": 0.04},
            "fish": [{"name": "fish", "force": "reactive", "nodes": 9, "body": {"modulus": 1e7}}]}
 
+# a flag that is straight, without any lift
+ALONG_THE_STREAM = {"time": {"end": 1, "shedding_interval": 0.05}, "fluid": {"density": 1, "velocity": [1, 0], "viscosity": 0},
+                    "fish": [{"nodes": 9, "sheet_points": 17, "wave": {"amplitude": 0, "frequency": 0}, "motion": {"prescribed": "head"},
+                              "start": {"heading": 180}, "pressure": {"span": "infinite"}, "body": {"profile": "uniform", "depth": 1}}]}
+
 
 @unittest.skipUnless(importlib.util.find_spec("scipy"), "python3-scipy is missing")
 class Optima(unittest.TestCase):
@@ -77,11 +82,21 @@ class Optima(unittest.TestCase):
 
     def test_wrong_arguments_are_refused_before_a_search(self):
         for words, wrong in (("at least one number", {"over": []}), ("SLSQP or trust-constr", {"method": "BFGS"}),
+                             ("at least one number", {"over": None}), ("tolerance is above 0", {"tolerance": -1}),
+                             ("most is a whole number of iterations above 0", {"most": 0}),
+                             (r"subject_to of speed: expects \(least, most\), not \(0.5, 0.8, 1\)", {"subject_to": {"speed": (0.5, 0.8, 1)}}),
+                             (r"expects a value or \(least, most\), not \(2, 1\)", {"subject_to": {"speed": (2, 1)}}),
+                             (r"expects a value or \(least, most\), not \(None, None\)", {"subject_to": {"speed": (None, None)}}),
+                             ("subject_to of speed: nan is not finite", {"subject_to": {"speed": np.nan}}),
                              ("is the quantity itself", {"subject_to": {"steady_cost_of_transport": 0.1}})):
             with self.assertRaisesRegex(shoal.CaseError, words):
                 shoal.optimize(SWIMMER, "cost_of_transport", **{"over": ["wave.amplitude"], "path": "never", **wrong})
         with self.assertRaisesRegex(TypeError, "subject_to is a dict"):
             shoal.optimize(SWIMMER, "cost_of_transport", ["wave.amplitude"], subject_to=[1], path="never")
+        with self.assertRaisesRegex(TypeError, "a quantity is a name"):
+            shoal.optimize(SWIMMER, None, ["wave.amplitude"], path="never")
+        with self.assertRaisesRegex(shoal.FileError, "/dev/null: cannot create this folder"):
+            shoal.optimize(SWIMMER, "cost_of_transport", ["wave.amplitude"], path="/dev/null", overwrite=True)
         self.assertFalse(os.path.exists("never"))
         with self.assertRaisesRegex(shoal.FileError, "best: exists"):
             shoal.optimize(SWIMMER, "cost_of_transport", ["wave.amplitude"], path="best")
@@ -96,7 +111,12 @@ class Optima(unittest.TestCase):
             ask("'nodes' is no such number", ["nodes"])
             ask("is 0 or not given", ["wave.constant"])
             ask("not within its bounds, 0.5 and 0.6", ["wave.amplitude"], {"wave.amplitude": (0.5, 0.6)})
+            ask(r"bounds of wave.amplitude: expects \(least, most\), not \(0.1,\)", ["wave.amplitude"], [(0.1,)])
             ask("which is not in over: wave.amplitude", ["wave.amplitude"], {"amplitude": (0.1, 0.6)})
+            with self.assertRaisesRegex(TypeError, "bounds is a dict of"):
+                shoal.optimize(SWIMMER, "cost_of_transport", ["wave.amplitude"], 3, path="wrong", overwrite=True)
+            with self.assertRaisesRegex(shoal.CaseError, "lift is 0 at the start"):
+                shoal.optimize(ALONG_THE_STREAM, "lift", ["modulus"], path="wrong", overwrite=True)
 
 
 class Examples(unittest.TestCase):
