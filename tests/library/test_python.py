@@ -169,6 +169,7 @@ class Runs(unittest.TestCase):
         for one in run, alone:
             one.step(3)
             one.step(0)
+            one.step(np.int64(0))
             self.assertAlmostEqual(one.time, 0.06)
         position, velocity = run.state("b")
         self.assertEqual((position.shape, velocity.shape), ((9, 2), (9, 2)))
