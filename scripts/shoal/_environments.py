@@ -15,7 +15,7 @@ import numpy as np
 
 from . import _library as lib
 from ._draw import picture_of, snapshot_of
-from ._library import CaseError, SolverError, check, choice_of, index_of, kind, number_of, numbers_of
+from ._library import CaseError, SolverError, check, choice_of, index_of, kind, number_of, numbers_of, refuse_masked
 from ._run import Run
 from ._vision import Vision
 
@@ -103,6 +103,8 @@ class _Swimmer:
         self.sensors = numbers_of(sensors, "sensors").reshape(-1, 2)
         self._earned = []
         if not callable(reward):
+            if not isinstance(reward, Mapping):
+                raise TypeError(f'reward is a function, or a dict of weights {{"speed": 1.0}}, not {kind(reward)}')
             self._earned = [(number_of(weight, f"reward: {choice_of(name, list(self._EARNED), 'a reward')}"),
                              self._EARNED[name]) for name, weight in reward.items()]
         if vision is not None and "sight" not in self.observations:
@@ -181,6 +183,7 @@ class _Swimmer:
         self._mark()
 
     def act(self, action):
+        refuse_masked(action, "an action")
         values = np.asarray(action, float).reshape(-1)
         numbers = values.tolist()
         if len(numbers) != len(self._box) or not all(low <= x <= high for x, (low, high) in zip(numbers, self._box)):
@@ -350,10 +353,14 @@ class _Swim:
             raise TypeError(f'assignments are a dict {{"time.end": 2}}, not {kind(assignments)}')
         if render_mode is not None:
             choice_of(render_mode, _RENDER_MODES, "render_mode")
+        if vary is not None and not isinstance(vary, Mapping):
+            raise TypeError(f'vary is a dict of bounds {{"fish[0].wave.amplitude": (0.3, 0.5)}}, not {kind(vary)}')
         self.render_mode = render_mode
         self._case, self._assignments = case, dict(assignments or {})
         self._vary = {key: self._checked_range(key, bounds) for key, bounds in (vary or {}).items()}
         self._far = None if far is None else number_of(far, "far, lengths,")
+        if far is not None and not self._far > 0:
+            raise CaseError(f"far, a distance from the goal in lengths, is above 0, not {far!r}")
         self._kept = None
         self.run = Run(case, self._assignments)
         self._random = np.random.default_rng()
@@ -388,11 +395,16 @@ class _Swim:
         self.event.begin(self.run)
         self._interval, self._end = self.run.interval, self.run.end
 
-    def _choose_run(self, seed, options):
-        if seed is not None:
-            self._random = self.event.random = np.random.default_rng(seed)
+    def _check_options(self, options):
+        if options is not None and not isinstance(options, Mapping):
+            raise TypeError(f'reset: options are a dict {{"assignments": {{...}}}}, not {kind(options)}')
         for name in options or {}:
             choice_of(name, self._OPTIONS, "reset: an option")
+
+    def _choose_run(self, seed, options):
+        self._check_options(options)
+        if seed is not None:
+            self._random = self.event.random = np.random.default_rng(seed)
         changes = dict((options or {}).get("assignments", {}))
         for key, (low, high) in self._vary.items():
             changes[key] = self._random.uniform(low, high)
@@ -493,6 +505,7 @@ class SwimEnv(_Swim, _from("gymnasium", "Env", object)):
     def reset(self, *, seed=None, options=None):
         """Begin an episode; returns observation and info. options: {"assignments": {...}} changes the case, {"goal": ...}
         the goal, both for this episode."""
+        self._check_options(options)
         self.swimmer.set_goal((options or {}).get("goal", self._goal))
         self._begin(seed, options)
         self.swimmer.begin()
@@ -575,6 +588,7 @@ class SwimVectorEnv(_from("gymnasium.vector", "VectorEnv", object)):
         seeds = [None if seed is None else seed + i for i in range(self.num_envs)] if np.ndim(seed) == 0 else list(seed)
         if len(seeds) != self.num_envs:
             raise CaseError(f"reset: {len(seeds)} seeds for {self.num_envs} environments")
+        self.envs[0]._check_options(options)
         goals = (options or {}).get("goal")
         own = [options] * self.num_envs
         is_list = isinstance(goals, (list, np.ndarray)) and len(goals) > 0

@@ -1144,9 +1144,19 @@ class Environments(unittest.TestCase):
         for wrong, text in (({"fish": "c"}, "there is no fish 'c'"), ({"goal": "here"}, "a goal is"),
                             ({"goal": ("c", (1, 1))}, "there is no fish 'c'"), ({"render_mode": "human"}, "rgb_array, html"),
                             ({"actions": {"bias": (1, 0)}}, "lower one first"), ({"vary": {"time.end": 3}}, "bounds of time.end"),
-                            ({"actions": ("bais",)}, "did you mean 'bias'")):
+                            ({"actions": ("bais",)}, "did you mean 'bias'"), ({"goal": (1, 1), "far": -1}, "far, .* is above 0")):
             with self.assertRaisesRegex(shoal.CaseError, text):
                 shoal.SwimEnv(PAIR, **wrong)
+        for wrong in ({"reward": "speed"}, {"reward": 1}, {"vary": ["time.end"]}, {"vary": "time.end"}):
+            with self.assertRaisesRegex(TypeError, " is a .*dict of (weights|bounds) .*, not "):
+                shoal.SwimEnv(PAIR, **wrong)
+        env = shoal.SwimEnv(PAIR)
+        for wrong in 1, "goal":
+            with self.assertRaisesRegex(TypeError, "reset: options are a dict"):
+                env.reset(options=wrong)
+        env.reset()
+        with self.assertRaisesRegex(shoal.CaseError, "an action: a value is masked"):
+            env.step(np.ma.array([0.1], mask=True))
 
     def test_an_environment_is_drawn(self):
         env = shoal.SwimEnv(PAIR, render_mode="rgb_array")
