@@ -263,7 +263,8 @@ int main(int argc, char **argv) {
     if (status != STATUS_OK) {
         const char *const message = status_message();
         const size_t length = strlen(message);
-        say_line(stderr, "%s%s%s", strstr(message, "error: ") ? "" : "shoal: error: ", message,
+        const bool is_of_case = strncmp(message, "error: ", 7) == 0 || strstr(message, ": error: ");
+        say_line(stderr, "%s%s%s", is_of_case ? "" : "shoal: error: ", message,
                  length > 0 && message[length - 1] == '\n' ? "" : "\n");
     }
     return main_exit(status_exit_code(status));

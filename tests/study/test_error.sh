@@ -209,6 +209,8 @@ check a_bound_has_steps_on_one_side grep -qE '^fish.pressure.suction +1 +-4, 8, 
 run error foil.yaml --of steady_lift -o uncertain --uncertain modulus=10% --uncertain fluid.density=0.05 --set 'error={of: steady_lift, keys: [nodes]}'
 check an_uncertain_number_is_in_the_table grep -qE '^fish.body.modulus +8.149e\+04 \+- 10 % +[0-9.]+ +input +' out
 check errors_add_in_quadrature python "$root/tests/study/quadrature.py"
+touch taken-error
+refused a_file_is_no_folder 4 'shoal: error: taken-error: cannot create this folder' error foil.yaml --of steady_lift -o taken-error
 refused no_state_to_start_from 4 '--from none.nc: cannot be read' error swimmer.yaml --of steady_speed --from none.nc -o none
 refused a_run_has_no_search 2 '--from table: starts a search' error swimmer.yaml --of speed --from table -o none
 run error swimmer.yaml --of steady_speed --sensitivity=modulus --from swims/member-0000.nc --set error=none -o again
