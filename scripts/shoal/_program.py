@@ -14,7 +14,7 @@ import subprocess
 import sys
 import tempfile
 import warnings
-from typing import Mapping, NamedTuple
+from typing import Iterable, Mapping, NamedTuple
 
 import numpy as np
 
@@ -234,8 +234,8 @@ def steady(case, assignments=None, path=None, overwrite: bool = False, start=Non
     start: the result of another steady state as the initial state. A search without convergence is a SolverError.
     """
     arguments = ["--json"] + ([] if _shows(progress) else ["-q"]) + (["--force"] if overwrite else [])
-    for word, value in (("-o", path), ("--from", start)):
-        arguments += [] if value is None else [word, os.fsdecode(text_of(value, word))]
+    for word, value, name in (("-o", path, "path"), ("--from", start, "start")):
+        arguments += [] if value is None else [word, _path(value, name)]
     with _CaseFile(case, folder) as file:
         return Steady(json.loads(_call(_words("steady", arguments, assignments), file.path, _shows(progress), file.shown)))
 
@@ -275,8 +275,8 @@ def threshold(case, key: str, first: float, last: float, assignments=None, path=
     """
     way = f"{os.fsdecode(text_of(key, 'key'))}={number_of(first, 'first')!r}:{number_of(last, 'last')!r}"
     arguments = ["--json", "--threshold", way] + ([] if _shows(progress) else ["-q"]) + (["--force"] if overwrite else [])
-    for word, value in (("-o", path), ("--from", start)):
-        arguments += [] if value is None else [word, os.fsdecode(text_of(value, word))]
+    for word, value, name in (("-o", path, "path"), ("--from", start, "start")):
+        arguments += [] if value is None else [word, _path(value, name)]
     with _CaseFile(case, folder) as file:
         found = json.loads(_call(_words("steady", arguments, assignments), file.path, _shows(progress), file.shown))
     found["value"], found["path"] = found.pop("threshold"), found.pop("file")
@@ -331,6 +331,9 @@ def _swept(sweep, relative_to=None) -> list[str]:
         return []
     if not isinstance(sweep, Mapping) or not sweep:
         raise TypeError(f"sweep is a dict of keys with their values, not {kind(sweep)}")
+    for key, values in sweep.items():
+        if isinstance(values, str) or not isinstance(values, Iterable):
+            raise TypeError(f"sweep: the values of {key} are a list, not {kind(values)}")
     axes = [{"key": str(key), "values": list(values)} for key, values in sweep.items()]
     axes[0] |= {} if relative_to is None else {"relative_to": relative_to}
     return ["sweep=" + json.dumps(axes, default=lambda value: value.item())]
