@@ -2,6 +2,7 @@
 """Chart when plates in line hold together: the amplitude of the heave below which a school falls apart.
 
     doc/examples/school_stability.py [--plates 2 3 4 5] [--table school_stability.csv] [--figure school_stability.png]
+                                     [--wake 0.5 3] [--set KEY=VALUE]
 
 Plates that heave in line keep places about one wavelength (the distance covered in a beat) apart. For each amplitude the
 program searches for the steady state of two plates, then for that of three, and so on: a further plate starts as far behind
@@ -31,17 +32,21 @@ HEAVES = [0.3, 0.25, 0.2, 0.175, 0.15, 0.12, 0.1, 0.075]  # m
 LENGTH = 1.0  # m
 WITHIN = 1.5  # states whose amplitude differs by less than this factor from a crossing count for the threshold
 LEAST_ERROR = 1e-3  # of a multiplier: two states without noise are no better known
+WAKE = 0.5, 3.0  # beats for which all wakes keep their strength behind the last plate, and in which they then lose it
 SPEED, EXPONENT = 3.87, 1.55  # m s-1 at a heave of 0.15 m, and how it grows with the heave: a start of the search
 COLUMNS = ["plates", "heave", "speed", "multiplier", "error", "period", "cpu", "places"]
 
 
-def case_of(heave, speed, places):
+def case_of(heave, speed, places, wake=WAKE):
     """A school in line: places in m, negative behind the first plate."""
-    fish = [{"name": chr(ord("a") + i), "start": {"position": [float(-place), 0]}} for i, place in enumerate(places)]
+    # the wakes of all plates end at the same place: what they do to each other far behind the last plate grows in a chaotic
+    # way, and would disturb the multipliers
+    lives = (np.array(places) - places[-1]) / speed + sum(wake)  # beats of 1 s
+    fish = [{"name": chr(ord("a") + i), "start": {"position": [float(-place), 0]}, "wake_lifetime": float(life / lives[0])}
+            for i, (place, life) in enumerate(zip(places, lives))]
     return {
         "format": 1, "include": [CASE], "name": "school", "sweep": [], "expect": [], "fish": fish,
-        # the wake of the first plate reaches the last one; it decays in the last quarter of its life
-        "wake": {"lifetime": 4.0 + len(places)},
+        "wake": {"lifetime": float(lives[0]), "decay": float(wake[1])},
         "defaults": {"fish": {"start": {"speed": float(speed)}, "motion": {"heave": float(heave)}}},
     }
 
@@ -50,7 +55,7 @@ def cpu_seconds():
     return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
 
 
-def state_of(heave, before):
+def state_of(heave, before, wake=WAKE, assignments=()):
     """The steady state of one plate more than in the row of another state, as a row of the table; without a multiplier if
     there is none."""
     places = np.array(before["places"])
@@ -60,7 +65,8 @@ def state_of(heave, before):
            "period": np.nan, "places": list(start)}
     with tempfile.TemporaryDirectory() as folder:
         try:
-            state = shoal.steady(case_of(heave, before["speed"], start), path=os.path.join(folder, "state.nc"), progress=False)
+            case = case_of(heave, before["speed"], start, wake)
+            state = shoal.steady(case, assignments, path=os.path.join(folder, "state.nc"), progress=False)
             largest = state.multipliers[0]
             row.update(speed=float(state.speed[0]), multiplier=abs(largest), error=float(state.multiplier_error[0]),
                        places=[float(place) for place in state.place[:, 0]])
@@ -132,14 +138,14 @@ def bound_of(rows):
     return bound
 
 
-def fill(rows, plates, heaves, path):
+def fill(rows, plates, heaves, path, wake=WAKE, assignments=()):
     """Compute the states that the table does not have."""
     for heave in heaves:
         at = {row["plates"]: row for row in rows if abs(row["heave"] - heave) < 1e-9}
         before = {"plates": 1, "speed": SPEED * (heave / 0.15) ** EXPONENT, "places": [0.0]}
         for n in range(2, max(plates) + 1):
             if n not in at:
-                row = at[n] = state_of(heave, before)
+                row = at[n] = state_of(heave, before, wake, assignments)
                 rows.append(row)
                 write_table(path, rows)
                 print(f"{n} plates, heave {heave:5.3f} m: {row['multiplier']:.4f} +- {row['error']:.4f}, period {row['period']:.2f} "
@@ -206,8 +212,11 @@ def main():
     parser.add_argument("--heaves", type=float, nargs="+", default=HEAVES, metavar="HEAVE", help="amplitudes, m (0.3 to 0.075)")
     parser.add_argument("--table", default="school_stability.csv", metavar="FILE", help="of all states; it may have some already (school_stability.csv)")
     parser.add_argument("--figure", metavar="PICTURE", help="draw the chart")
+    parser.add_argument("--wake", type=float, nargs=2, default=WAKE, metavar=("WHOLE", "DECAY"),
+                        help="beats for which all wakes keep their strength behind the last plate, and in which they then lose it (0.5 3)")
+    parser.add_argument("--set", nargs="+", default=[], metavar="KEY=VALUE", help="other values of keys of the case")
     options = parser.parse_args()
-    rows = fill(read_table(options.table), options.plates, options.heaves, options.table)
+    rows = fill(read_table(options.table), options.plates, options.heaves, options.table, options.wake, options.set)
     for line in report(rows):
         print(line)
     if options.figure:
