@@ -110,10 +110,11 @@ struct convergence_result convergence_judge(const struct convergence_levels *lev
     result.verdict = CONVERGENCE_NONE;
     const bool is_noise = !(largest > 0) || largest <= of_noise * noise * hypot(base[0], base[1]);
     if (is_noise) {
-        // coarser levels have larger errors than the stated one
-        for (int i = 0; i < levels->base; i++)
-            result.error = i > 0 ? fmax(result.error, distance(f[i], base)) : distance(f[i], base);
-        result.spread = result.error;
+        // coarser levels have larger errors than the stated one, and count only without finer ones
+        for (int i = 0; i < levels->base && i < 2; i++) result.spread = fmax(result.spread, distance(f[i], f[i + 1]));
+        result.shift = f[0][0] - base[0];
+        if (levels->base == 0) result.spread = result.error;
+        result.error = distance(f[0], base) + result.spread;
         return result;
     }
 
@@ -145,6 +146,17 @@ struct convergence_result convergence_judge(const struct convergence_levels *lev
             result.error *= levels->base == 0 ? without_finer : with_finer;
         }
         result.spread = fmax(result.spread, result.error - fabs(result.shift));
+        return result;
+    }
+
+    // faster than the design order without a jump to it: what remains is between nothing and Richardson's estimate with
+    // the design order
+    if (is_high && result.order <= result.coarse_order + most_change) {
+        const double middle = richardson / safety / 2;
+        result.finest_error = richardson;
+        result.error = of_base + richardson;
+        result.shift += copysign(middle, f[0][0] - f[1][0]);
+        result.spread = richardson - middle;
         return result;
     }
 
@@ -275,6 +287,7 @@ struct convergence_slope convergence_find_slope(int n, const double *step, const
 /* The member that a member is compared with. */
 static int twin_of(const struct error_study *study, int m) {
     if (m == study->base) return study->twin->base;
+    if (m == study->finest) return study->twin->finest;
     for (int k = 0; k < study->n_keys; k++) {
         for (int i = 0; i < study->key[k].n_levels; i++) {
             if (study->key[k].member[i] == m) return study->key[k].twin[i];
@@ -628,6 +641,20 @@ static double error_of_differences(const struct error_study *study, const struct
     return study->relation == ERROR_CHANGE ? sum : sum / member_file_number(other, multiplier, 0);
 }
 
+/* What the sheet of the levels of the nodes adds to a value. The finest levels together have it, too, although the
+ * sheet is not varied. */
+static double value_with_sheet(const struct error_study *study, const struct member_file *members, int q, int f) {
+    const struct error_study_key *nodes = NULL;
+    for (int k = 0; k < study->n_keys; k++) {
+        const struct error_study_key *const key = &study->key[k];
+        if (strcmp(key->row->path, "fish.sheet_points") == 0 && key->n_levels > 1) return 0;
+        if (strcmp(key->row->path, "fish.nodes") == 0 && key->n_levels > 1) nodes = key;
+    }
+    if (!nodes || nodes->stated != nodes->first_stated) return 0;
+    return convergence_study_value(study, members, nodes->member[nodes->stated], q, f) -
+           convergence_study_value(study, members, study->base, q, f);
+}
+
 void convergence_study_judge(struct error_study *study, const struct member_file *members) {
     for (int k = 0; k < study->n_keys; k++) {
         struct error_study_key *const key = &study->key[k];
@@ -635,44 +662,62 @@ void convergence_study_judge(struct error_study *study, const struct member_file
         judge_key(study, members, key);
     }
 
-    // the stated value, the error, and the interaction of keys refined together
+    // the stated value and its error
     int n_moved = 0;
     for (int k = 0; k < study->n_keys; k++) n_moved += study->key[k].stated != study->key[k].first_stated;
     for (int q = 0; q < study->n_asked; q++) {
         for (int f = 0; f < study->n_fish; f++) {
             const int place = error_plan_place(study, q, f);
-            double sum = 0, shift = 0, spread = 0, moved = convergence_study_value(study, members, study->base, q, f);
+            const double base = convergence_study_value(study, members, study->base, q, f);
+            double sum = 0, shift = 0, squares = 0, moved = base, apart = 0;
+            study->value[place] = convergence_study_value(study, members, study->stated, q, f);
             for (int k = 0; k < study->n_keys; k++) {
                 const struct error_study_key *const key = &study->key[k];
                 if (!is_error(key)) continue;
+                const double stated = convergence_study_value(study, members, key->member[key->stated], q, f);
                 sum += key->part[place].error;
                 shift += key->part[place].shift;
-                spread += key->part[place].spread;
-                moved += convergence_study_value(study, members, key->member[key->stated], q, f) -
-                         convergence_study_value(study, members, key->member[key->first_stated], q, f);
-            }
-            study->value[place] = convergence_study_value(study, members, study->stated, q, f);
-            study->together[place] = n_moved > 1 ? fabs(study->value[place] - moved) : 0;
-            study->parts[place] = sum;
-            study->error[place] = fmin(sum, fabs(shift) + spread) + study->together[place];
-            if (isnan(sum) || study->study->error->sensitivity) study->error[place] = NAN;
-            if (strcmp(member_file_quantity(study->quantity[q])->name, "steady_multiplier") == 0) {
-                study->error[place] += error_of_differences(study, members);
+                squares += key->part[place].spread * key->part[place].spread;
+                moved += stated - convergence_study_value(study, members, key->member[key->first_stated], q, f);
+                apart += convergence_study_value(study, members, key->member[0], q, f) - stated;
             }
 
+            // the finest levels together, less the sum of the finest levels apart; the keys of a study without such a
+            // member add up, but for those that are refined
+            const double with_sheet = value_with_sheet(study, members, q, f);
+            const double interaction = study->finest < 0
+                                           ? 0
+                                           : convergence_study_value(study, members, study->finest, q, f) -
+                                                 (study->value[place] + with_sheet) - apart;
+            const double unsigned_part = study->finest < 0 && n_moved > 1 ? fabs(study->value[place] - moved) : 0;
+            study->parts[place] = sum;
+            study->shift[place] = shift + interaction;
+            study->together[place] = fabs(shift + interaction) - fabs(shift) + unsigned_part;
+
+            // nothing is known more exactly than the noise
+            const bool is_of_mode = is_multiplier(member_file_quantity(study->quantity[q])->name);
+            const double size = fabs(study->value[place]);
+            const bool is_itself = study->relation != ERROR_VALUE && twin_of(study, study->stated) == study->stated &&
+                                   error_plan_twin_fish(study, f) == f;
+            study->of_noise[place] = is_of_mode ? error_of_differences(study, members)
+                                     : is_itself || !(size > 0)
+                                         ? 0
+                                         : size * study_noise(study, members, study->stated, q, f, false);
+            study->error[place] = fabs(study->shift[place]) + sqrt(squares) + unsigned_part + study->of_noise[place];
+            if (isnan(sum) || study->study->error->sensitivity) study->error[place] = NAN;
+
             // uncertain inputs are independent of each other and of the numerical errors
-            double squares = 0;
+            double inputs = 0;
             for (int k = 0; k < study->n_keys; k++) {
                 const struct error_study_key *const key = &study->key[k];
-                if (key->slope && key->n_levels > 1) squares += key->part[place].error * key->part[place].error;
+                if (key->slope && key->n_levels > 1) inputs += key->part[place].error * key->part[place].error;
             }
-            study->inputs[place] = sqrt(squares);
+            study->inputs[place] = sqrt(inputs);
             study->error[place] = hypot(study->error[place], study->inputs[place]);
 
             // the lowest and the highest value with other choices of the model: the stated value plus the change of the
             // case by the choice
-            const double stated = study->value[place],
-                         base = convergence_study_value(study, members, study->base, q, f);
+            const double stated = study->value[place];
             study->lowest[place] = study->highest[place] = (struct error_study_model){stated, -1, 0};
             for (int k = 0; k < study->n_keys; k++) {
                 const struct error_study_key *const key = &study->key[k];
@@ -760,7 +805,7 @@ struct error_study_next convergence_study_next(struct error_study *study, const 
         most = part->error;
         next.key = k;
     }
-    if (next.key < 0) return next;
+    if (next.key < 0 || isnan(study->error[next.place])) return next;
 
     // the next finer level: a member, or a new level
     struct error_study_key *const key = &study->key[next.key];
@@ -785,16 +830,16 @@ struct error_study_next convergence_study_next(struct error_study *study, const 
     for (int place = 0; place < study->n_asked * study->n_fish; place++) {
         const double now = key->part[place].error, then = next_error(study, members, key, next.value, place);
         const double part = isnan(then) || !(now > 0) ? 1 : then / now;
-        double error = 0, shift = 0, spread = 0;
+        double shift = study->shift[place], squares = 0;
         for (int k = 0; k < study->n_keys; k++) {
             if (!is_error(&study->key[k])) continue;
             const struct convergence_result *const of = &study->key[k].part[place];
             const double factor = k == next.key ? part : 1;
-            error += factor * of->error;
-            shift += factor * of->shift;
-            spread += factor * of->spread;
+            shift += (factor - 1) * of->shift;
+            squares += factor * factor * of->spread * of->spread;
         }
-        const double sum = relative(study, place, fmin(error, fabs(shift) + spread) + study->together[place]);
+        const double rest = study->of_noise[place] + (study->finest < 0 ? study->together[place] : 0);
+        const double sum = relative(study, place, fabs(shift) + sqrt(squares) + rest);
         if (sum > next.sum) next.sum = sum;
     }
     return next;
@@ -805,7 +850,7 @@ int convergence_study_refine(struct error_study *study, const struct member_file
         const struct error_study_next next = convergence_study_next(study, members);
         const bool is_useful = next.key >= 0 && !isnan(next.value) && !isnan(study->error[next.place]);
         if (!is_useful || study->cost * next.cost > study->study->error->most) return 0;
-        const int n_before = study->study->sweep[0].n_values, stated = study->stated;
+        const int n_before = study->study->sweep[0].n_values, stated = study->stated, finest = study->finest;
         const struct error_study_key before = study->key[next.key];
 
         // move to the next finer level, or insert a finer level
@@ -836,6 +881,7 @@ int convergence_study_refine(struct error_study *study, const struct member_file
         if (study->study->sweep[0].n_values > most_members) {
             study->study->sweep[0].n_values = n_before;
             study->stated = stated;
+            study->finest = finest;
             study->key[next.key] = before;
             return 0;
         }

@@ -11,13 +11,14 @@
  * and agree to 0.8, and if p is at most 0.5 above the design order. Then |f_0 - limit| <= 1.25
  * d_0/((h_1/h_0)^min(p, design) - 1), to which |f_0 - f_base| is added. Any other sequence is flagged. If the finest of
  * four levels is about twice as fine as the stated one, the error is |f_0 - f_base| plus the larger of d_0 and d_1;
- * otherwise the largest |f_i - f_base|, doubled for fewer than four levels. If p is too high, d_0 is small by
- * accident: the error is at least that of an accepted sequence.
+ * otherwise the largest |f_i - f_base|, doubled for fewer than four levels. If p is too high because it jumps from p',
+ * d_0 is small by accident: the error is at least that of an accepted sequence. If p is too high without a jump, what
+ * remains beyond f_0 is between 0 and Richardson's estimate with the design order.
  *
  * The error of a key has a known sign: the limit is expected at f_base + shift +- spread. An accepted sequence has the
  * shift of Richardson's extrapolation, any other that of the finest level, with a spread of at least d_0 and d_1.
- * Shifts of several keys add with their signs, spreads without: |sum of shifts| + sum of spreads is the error of the
- * value, but no more than the sum of the errors. */
+ * Shifts of several keys add with their signs, and the member with the finest levels of all keys adds what they do
+ * together; independent spreads add in quadrature. The error of the value is |shift| + spread + noise. */
 #ifndef CONVERGENCE_H
 #define CONVERGENCE_H
 

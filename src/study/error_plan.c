@@ -268,16 +268,20 @@ int error_plan_member(struct error_study *study, int n, const struct error_plan_
     return row_append(study->sweep, row.value, before, study->is_against);
 }
 
-/* Whether a level of a key is a valid case. */
-static bool is_valid_level(struct error_study *study, int k, double value) {
+/* Whether some changes of the case give a valid case. */
+static bool are_valid_changes(struct error_study *study, int n, const struct error_plan_change *changes) {
     struct arena *const scratch = arena_create(study->sweep->arena, "a level of an error study");
     struct case_values *values;
-    const struct row row = make_row(study, 1, &(struct error_plan_change){k, value});
+    const struct row row = make_row(study, n, changes);
     const int member = row_append(study->sweep, row.value, -1, study->is_against);
     const enum status status = study_folder_case(scratch, &values, study->study, member);
     study->study->sweep[0].n_values = member;
     arena_free(scratch);
     return status == STATUS_OK;
+}
+
+static bool is_valid_level(struct error_study *study, int k, double value) {
+    return are_valid_changes(study, 1, &(struct error_plan_change){k, value});
 }
 
 /* Fewest events in a beat: below, a run has the warning "few events". */
@@ -658,6 +662,8 @@ static enum status choose_quantities(struct error_study *study) {
     const int n = study->n_asked * study->n_fish;
     NEW(study->sweep->arena, study->value, n);
     NEW(study->sweep->arena, study->error, n);
+    NEW(study->sweep->arena, study->shift, n);
+    NEW(study->sweep->arena, study->of_noise, n);
     NEW(study->sweep->arena, study->together, n);
     NEW(study->sweep->arena, study->parts, n);
     NEW(study->sweep->arena, study->inputs, n);
@@ -665,6 +671,26 @@ static enum status choose_quantities(struct error_study *study) {
     NEW(study->sweep->arena, study->lowest, n);
     NEW(study->sweep->arena, study->highest, n);
     return STATUS_OK;
+}
+
+/* Whether a key is a numerical one that has finer levels than that of the case. */
+static bool has_finer(const struct error_study_key *key) {
+    return key->row->kind != SWEEP_MODEL && key->row->kind != SWEEP_INPUT && key->first_stated > 0;
+}
+
+/* Find or add the member with all numerical keys at their finest levels; a point that is not full has none. Returns the
+ * number of new members. */
+static int choose_finest(struct error_study *study) {
+    struct error_plan_change changes[ERROR_STUDY_KEYS];
+    int n = 0;
+    for (int k = 0; k < study->n_keys; k++) {
+        if (has_finer(&study->key[k])) changes[n++] = (struct error_plan_change){k, study->key[k].value[0]};
+    }
+    study->finest = -1;
+    if (n == 0 || !study->is_full || !are_valid_changes(study, n, changes)) return 0;
+    bool is_new;
+    study->finest = error_plan_member(study, n, changes, study->base, &is_new);
+    return is_new;
 }
 
 int error_plan_members(struct error_study *study) {
@@ -687,7 +713,7 @@ int error_plan_members(struct error_study *study) {
         }
     }
 
-    return n_new;
+    return n_new + choose_finest(study);
 }
 
 /* Set the twin of each point: the point itself, the point with a value of the first axis, or the other case. */
@@ -725,6 +751,7 @@ static enum status choose_twins(struct error_sweep *sweep, int n_axes, const str
                                         .study = &sweep->study,
                                         .values = values,
                                         .is_full = true,
+                                        .finest = -1,
                                         .is_against = true,
                                         .n_fish = values->school.n_fish};
         for (int p = 0; p < sweep->n_points; p++) sweep->twin[p] = sweep->n_points;
@@ -758,8 +785,12 @@ static enum status create_points(struct error_sweep *sweep, char ***swept, const
         TRY(study_folder_watch(&watch, p + 1));
         TRY(study_refusals_add(&refusals, study, p, study_folder_case(arena, &values, study, p)));
         if (!values) continue;
-        *point = (struct error_study){
-            .sweep = sweep, .study = study, .values = values, .is_full = true, .n_fish = values->school.n_fish};
+        *point = (struct error_study){.sweep = sweep,
+                                      .study = study,
+                                      .values = values,
+                                      .is_full = true,
+                                      .finest = -1,
+                                      .n_fish = values->school.n_fish};
         char **value = *swept + p * sweep->n_swept;
         for (int a = 0; a < n_axes; a++) {
             const int i = sweep_member_value(study, p, a), last = from[a].n_values - 1;
@@ -862,12 +893,18 @@ static struct error_sweep *create_comparison(struct error_sweep *sweep, enum err
         to->twin = twin;
         NEW(arena, to->value, n);
         NEW(arena, to->error, n);
+        NEW(arena, to->shift, n);
+        NEW(arena, to->of_noise, n);
         NEW(arena, to->together, n);
         NEW(arena, to->parts, n);
         NEW(arena, to->inputs, n);
         NEW(arena, to->shared, n);
         NEW(arena, to->lowest, n);
         NEW(arena, to->highest, n);
+        bool have_finest = from->finest >= 0 && twin->finest >= 0;
+        for (int k = 0; k < twin->n_keys; k++) {
+            have_finest &= !has_finer(&twin->key[k]) || key_in(from, twin->key[k].row);
+        }
         for (int k = 0; k < to->n_keys; k++) {
             struct error_study_key *const key = &to->key[k];
             const struct error_study_key *const other = key_in(twin, key->row), copy = *key;
@@ -885,6 +922,11 @@ static struct error_sweep *create_comparison(struct error_sweep *sweep, enum err
                 key->member[key->n_levels] = copy.member[i];
                 key->twin[key->n_levels++] = member;
             }
+            // the finest levels of both cases have to be those of the comparison
+            if (has_finer(&copy) || (other && has_finer(other))) {
+                have_finest &= !(fabs(key->value[0] - copy.value[0]) > 0);
+                have_finest &= !other || !has_finer(other) || key->twin[0] == other->member[0];
+            }
             if (!*key->objection && other) memcpy(key->objection, other->objection, CONVERGENCE_BYTES);
             if (key->n_levels == 1 && !*key->objection) {
                 snprintf(key->objection, CONVERGENCE_BYTES, "both cases have no other level in common");
@@ -892,6 +934,7 @@ static struct error_sweep *create_comparison(struct error_sweep *sweep, enum err
             NEW(arena, key->part, n);
             if (key->row->kind == SWEEP_INPUT) NEW(arena, key->slope, n);
         }
+        if (!have_finest) to->finest = -1;
     }
     return compared;
 }
@@ -1015,6 +1058,7 @@ int error_plan_choose_estimated(const struct error_sweep *sweep, int *like) {
     for (int p = sweep->n_points - 1; p >= 0; p--) {
         const struct error_study *const study = &sweep->point[p];
         point[study->base] = p;
+        if (study->finest >= 0) point[study->finest] = p;
         for (int k = 0; k < study->n_keys; k++) {
             for (int i = 0; i < study->key[k].n_levels && study->key[k].n_levels > 1; i++) {
                 point[study->key[k].member[i]] = p;

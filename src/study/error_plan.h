@@ -91,8 +91,11 @@ struct error_study {
     struct error_study_key key[ERROR_STUDY_KEYS];
     int base;              /* the member of the case */
     int stated;            /* the member of the stated value */
-    double *value, *error; /* stated values, and their errors; NaN: unknown   (n_asked, n_fish) */
-    double *together;      /* part of the error: interaction of refined keys  (n_asked, n_fish) */
+    int finest;            /* the member with all numerical keys at their finest levels; -1: none */
+    double *value, *error; /* stated values, and their errors; NaN: unknown                         (n_asked, n_fish) */
+    double *shift;    /* the limit is expected at value + shift                                     (n_asked, n_fish) */
+    double *together; /* part of the error: how the keys act together; below 0: they cancel         (n_asked, n_fish) */
+    double *of_noise; /* part of the error: integrator and search, or the differences of a mode     (n_asked, n_fish) */
     double *parts;  /* the errors of all keys, without regard to their signs                        (n_asked, n_fish) */
     double *inputs; /* part of the error, in quadrature: inputs with an uncertainty                 (n_asked, n_fish) */
     double *shared; /* part of the error: other keys, from the full points                         (n_asked, n_fish) */

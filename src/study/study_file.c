@@ -55,6 +55,8 @@ enum {
     KEY_MEMBER,
     STATED,
     BAR,
+    LIMIT_OF_ALL,
+    OF_NOISE,
     LOWEST,
     HIGHEST,
     PART,
@@ -133,6 +135,8 @@ static const struct row {
     {"key_member", "1", NETCDF_INT, IN_ERRORS, P | K | KL, "member of each level; -1: none"},
     {"stated_%s", NULL, NETCDF_DOUBLE, BY_ERROR, P | F, "stated value of %s"},
     {"bar_%s", NULL, NETCDF_DOUBLE, BY_ERROR, P | F, "error of the stated value of %s, of all keys"},
+    {"expected_%s", NULL, NETCDF_DOUBLE, BY_ERROR, P | F, "limit of %s to which the finest levels of all keys lead"},
+    {"noise_%s", NULL, NETCDF_DOUBLE, BY_ERROR, P | F, "error of the stated value of %s by integrator and search"},
     {"lowest_%s", NULL, NETCDF_DOUBLE, BY_ERROR, P | F, "lowest %s of other models; NaN: none"},
     {"highest_%s", NULL, NETCDF_DOUBLE, BY_ERROR, P | F, "highest %s of other models"},
     {"part_%s", NULL, NETCDF_DOUBLE, BY_ERROR, P | K | F,
@@ -343,10 +347,12 @@ static struct value error_value(const struct contents *contents, const struct va
     if (v->row == POINT_MEMBER) return (struct value){.number = point->stated};
     if (is_of_point) i++;
     const bool is_model = v->row == LOWEST || v->row == HIGHEST;
-    const bool is_sum = v->row == STATED || v->row == BAR || is_model;
+    const bool is_sum = (v->row >= STATED && v->row <= OF_NOISE) || is_model;
     const int place = error_plan_place(point, v->number, is_sum ? i[0] : i[v->row == AT_LEVEL ? 2 : 1]);
     if (is_model && !(contents->study->error->models && point->is_full)) return (struct value){.number = NAN};
     if (is_model) return (struct value){.number = (v->row == LOWEST ? point->lowest : point->highest)[place].value};
+    if (v->row == LIMIT_OF_ALL) return (struct value){.number = point->value[place] + point->shift[place]};
+    if (v->row == OF_NOISE) return (struct value){.number = point->of_noise[place]};
     if (is_sum) return (struct value){.number = v->row == STATED ? point->value[place] : point->error[place]};
 
     // the key does not have to be varied at this point

@@ -601,6 +601,14 @@ enum status study_print_plan(const struct error_sweep *sweep, int n_processes, c
             table_cell(table, "%s", times.text ? times.text : "");
             table_row(table);
         }
+        const int finest = sweep->point[p].finest;
+        if (finest < 0) continue;
+        if (sweep->n_points > 1) table_cell(table, "%d", p);
+        table_cell(table, "%s", "together");
+        table_cell(table, "%s", "the finest");
+        table_cell(table, "%d", finest);
+        table_cell(table, "%.2g", duration[finest]);
+        table_row(table);
     }
     table_print(table, stream);
 
@@ -805,22 +813,26 @@ static void print_shares(const struct error_study *study, const struct error_stu
         table_row(table);
     }
 
-    // what the errors of opposite signs take away from each other
-    bool cancel = false, has_inputs = false;
+    // what signs and independence of the errors take away from their sum
+    bool cancel = false, is_noisy = false, has_inputs = false, act_together = n_moved > 1;
     double *cancelled, *numerical;
     NEW(study->sweep->arena, cancelled, study->n_asked * study->n_fish);
     NEW(study->sweep->arena, numerical, study->n_asked * study->n_fish);
     for (int place = 0; place < study->n_asked * study->n_fish; place++) {
-        const double sum = study->parts[place] + study->together[place] + study->shared[place],
-                     all = study->error[place], inputs = study->inputs[place];
+        const double noise = study->of_noise[place], together = study->together[place],
+                     sum = study->parts[place] + together + study->shared[place] + noise, all = study->error[place],
+                     inputs = study->inputs[place], least = 1e-3 * fabs(sum);
         numerical[place] = sqrt(fmax(0, all * all - inputs * inputs));
         cancelled[place] = numerical[place] - sum;
-        cancel |= cancelled[place] < -1e-3 * sum;
+        cancel |= fabs(cancelled[place]) > least;
+        is_noisy |= noise > least;
+        act_together |= fabs(together) > least;
         has_inputs |= inputs > 0;
     }
 
-    if (n_moved > 1) sum_row(table, study, "together", study->together, f);
-    if (cancel) sum_row(table, study, "opposite signs", cancelled, f);
+    if (act_together) sum_row(table, study, "together", study->together, f);
+    if (is_noisy) sum_row(table, study, "noise", study->of_noise, f);
+    if (cancel) sum_row(table, study, "cancelled", cancelled, f);
     if (has_inputs) sum_row(table, study, "numerical", numerical, f);
     if (has_inputs) sum_row(table, study, "inputs", study->inputs, f);
     sum_row(table, study, has_inputs ? "sum, in quadrature" : "sum", study->error, f);

@@ -24,7 +24,7 @@ for folder in sys.argv[1:]:
         prefix, _, quantity = name.partition("_")
         if variable.dtype == "S1" or name.startswith("key_value"):
             continue
-        unit = data[quantity].units if prefix in ("stated", "bar", "lowest", "highest", "part", "shift", "spread") else None
+        unit = data[quantity].units if prefix in ("stated", "bar", "expected", "noise", "lowest", "highest", "part", "shift", "spread") else None
         assert variable.units == (unit or ("1" if prefix in ("key", "point", "member") else variable.units)), name
 
     keys, fish, points = text(data["key_name"][:]), text(data["fish"][:]), []
@@ -46,10 +46,8 @@ for folder in sys.argv[1:]:
         n_rows += 1
         if row["key"] == "sum":
             near(error, of("bar"), 1e-2, row)
-            part = [of("part", k) for k in range(len(keys)) if not data["key_is_choice"][k]]
-            shift, spread = ([of(name, k) for k in range(len(keys)) if not data["key_is_choice"][k]]
-                             for name in ("shift", "spread"))
-            bar = min(np.nansum(part), abs(np.nansum(shift)) + np.nansum(spread))
+            spread = [of("spread", k) for k in range(len(keys)) if not data["key_is_choice"][k]]
+            bar = abs(of("expected") - value) + np.sqrt(np.nansum(np.square(spread))) + of("noise")
             assert points != [[]] or np.isclose(bar, of("bar")), row
         elif model != "stated":
             near(error, abs(of(model) - value), 1e-2, row)

@@ -147,6 +147,24 @@ TEST(an_order_far_above_the_design_order_is_flagged) {
     NEAR(judge(&key, equal, 1e-7).error, 0.1, 1e-12, 0);
 }
 
+/* f = 2 + 0.3 h^2 + h^4, with a design order of 1: the orders stay above it. What remains beyond the finest level is
+ * between nothing and Richardson's estimate with the design order. */
+TEST(a_steady_order_above_the_design_order_bounds_what_remains) {
+    for (int base = 2; base < 4; base++) {
+        const struct key key = {4, base, {0.05, 0.1, 0.2, 0.4}, 1, NULL};
+        double value[4];
+        for (int i = 0; i < 4; i++) value[i] = 2 + 0.3 * pow(key.level[i], 2) + pow(key.level[i], 4);
+        const struct convergence_result result = judge(&key, value, 1e-9);
+        const double d_0 = value[1] - value[0], of_base = value[base] - value[0];
+        verdict_is(result.verdict, CONVERGENCE_HIGH);
+        NEAR(result.shift, -(of_base + d_0 / 2), 1e-12, 0);
+        NEAR(result.spread, 0.75 * d_0, 1e-12, 0);
+        NEAR(result.error, of_base + 1.25 * d_0, 1e-12, 0);
+        NEAR(result.finest_error, 1.25 * d_0, 1e-12, 0);
+        BELOW(fabs(value[base] + result.shift - 2), result.spread);
+    }
+}
+
 /* A Strouhal number whose finest levels differ by 0.0016: Richardson with order 0.09 gave an error of 0.032. */
 TEST(an_order_below_half_of_the_design_order_is_flagged) {
     char reason[CONVERGENCE_BYTES];
@@ -209,7 +227,9 @@ TEST(differences_below_the_noise_are_none) {
     const double speed[] = {0.93640, 0.93641, 0.93639};
     const struct convergence_result result = judge(&key, speed, 2.5e-5);
     verdict_is(result.verdict, CONVERGENCE_NONE);
-    NEAR(result.error, 1e-5, 0, 1e-6);  // from the finer level: the coarser one is no error of the stated one
+    NEAR(result.shift, -1e-5, 0, 1e-6);  // to the finer level: the coarser one is no error of the stated one
+    NEAR(result.spread, 1e-5, 0, 1e-6);
+    NEAR(result.error, 2e-5, 0, 1e-6);
     verdict_is(judge(&key, speed, 1e-6).verdict, CONVERGENCE_TURNS);
     NEAR(judge(&key, speed, 1e-6).error, 2e-5, 0, 1e-6);  // a tenth of the tolerance, doubled
     // a difference of 2e-5 in 0.94 against three times the noise

@@ -57,10 +57,10 @@ check another_study_replaces_the_whole_folder test "$code" = 0 -a "$(cd fewer &&
 
 # ---- within a bound
 
-run error foil.yaml --of steady_lift --within 1.5e-4 -o within
+run error foil.yaml --of steady_lift --within 1e-4 -o within
 sed -i '1,/^steady_lift/{/^steady_lift/!d}' out
 check refinement_ends_with_0 test "$code" = 0
-check the_error_is_within_the_bound awk '/^steady_lift/ { sub(/.*\(/, ""); exit !($1 <= 0.015) }' out
+check the_error_is_within_the_bound awk '/^steady_lift/ { sub(/.*\(/, ""); exit !($1 <= 0.01) }' out
 check the_stated_value_has_moved eval '! grep -qE "^fish.nodes .* \[17\] " out'
 check its_cost_is_said grep -q 'the stated value takes .* times the time of the case' out
 cp out table
@@ -77,7 +77,7 @@ refused one_warning_of_the_stated_value_is_enough_for_strict 3 '1 warning about 
     gather warned --strict
 run info within/study.nc
 check info_takes_them_too cmp <(sed -n '/^steady_lift/,$p' out) table
-run error foil.yaml --of steady_lift --within 1.5e-4 -o within
+run error foil.yaml --of steady_lift --within 1e-4 -o within
 check the_same_command_runs_nothing cmp <(sed -n '/^steady_lift/,$p' out) table
 rm "$(ls within/member-*.nc | tail -n 1)"
 run gather within
@@ -303,13 +303,14 @@ end
 # more processes than members: the time of the longest, of which the table prints two digits
 run error five.yaml --plan -j 64 --set time.end=100 --set 'sweep=[]' --set 'expect=[]'
 check members_at_once_take_the_time_of_the_longest awk '/^(fish|solver)/ { for (i = NF - 2; i <= NF; i++) if ($i > most) most = $i }
+    /^together/ && $NF > most { most = $NF }
     / at once/ { ok = $13 == most && $14 == "s" && $16 == 64 } END { exit !ok }' out
 run study five.yaml -q -o five
 check a_missed_expectation_at_points_gives_exit_code_3 test "$code" = 3
 check a_single_one_has_no_others has err "expect[0]: speed: expectation not met: see the output"
 run gather five
 check each_row_has_values_of_its_point test "$(awk '$1 ~ /^[0-3]$/ && $5 == $2 && $2 == int($1 / 2) + 1 &&
-    $3 == $1 % 2 + 1 && $4 ~ /^[a-d]$/ && $6 < 1e-9 && $7 < 1e-7 && $8 > 3 && $NF == "rtol"' out | wc -l)" = 16
+    $3 == $1 % 2 + 1 && $4 ~ /^[a-d]$/ && $6 < 1e-4 && $7 < 1e-2 && $8 > 3 && $NF == "rtol"' out | wc -l)" = 16
 check the_other_fish_are_in_the_files has out 'The first 4 of 5 fish; error.csv and study.nc have all.'
 check a_point_of_one_key_is_found eval 'has out "speed, 10 values" && has out "MISSED   the largest is 2, expected at most 1.9"'
 check a_point_of_two_keys_is_found eval 'has out "speed of e \"5\", last, 1 value" && has out "met      the smallest is 2"'

@@ -80,7 +80,7 @@ TEST(the_keys_of_the_table_have_the_levels_of_the_table) {
 
     // every member is a valid case, and the search starts from a neighbour; the case alone has multipliers
     const int n = sweep_n_members(study.study);
-    assert_int_equal(n, 18);
+    assert_int_equal(n, 19);
     for (int m = 0; m < n; m++) {
         const struct case_values member = member_of(study.study, m);
         assert_int_equal(member.steady.multipliers, m == 0 ? YES : NO);
@@ -92,6 +92,13 @@ TEST(the_keys_of_the_table_have_the_levels_of_the_table) {
     assert_int_equal(sweep_member_before(study.study, 0), -1);
     assert_int_equal(sweep_member_before(study.study, interval->member[2]), 0);
     assert_int_equal(sweep_member_before(study.study, interval->member[3]), interval->member[2]);
+
+    // one member has the finest levels of all keys
+    static const char *const paths[] = {"fish.nodes", "time.shedding_interval", "solver.rtol", "wake.tolerance"};
+    assert_int_equal(study.finest, n - 1);
+    for (int i = 0; i < 4; i++)
+        NEAR(setting(&study, study.finest, paths[i]), key_of(&study, paths[i])->value[0], 0, 1e-12);
+    NEAR(setting(&study, study.finest, "fish.sheet_points"), 97, 0, 0);  // that of the nodes is finer than 69
 }
 
 TEST(without_confirm_there_is_no_finer_level) {
@@ -358,13 +365,14 @@ TEST(a_plan_estimates_points_that_cost_the_same_once) {
     int like[128];
     const struct error_study stiffness = open_study(moduli, "{of: steady_speed, keys: [nodes, shedding_interval]}");
     BELOW(sweep_n_members(stiffness.study), 128);
-    // a point has 8 members: the case, 4 numbers of nodes with one sheet, 3 more intervals. Points 1 and 3 do not vary
-    // all keys. They need an estimate only for the case of point 1: it starts from a neighbour, unlike that of point 0
-    assert_int_equal(choose_estimated(&stiffness, like), 3 * 8 + 1);
+    // a point has 8 members: the case, 4 numbers of nodes with one sheet, 3 more intervals. A full point also has
+    // the finest nodes at the finest interval. Points 1 and 3 do not vary all keys. They need an estimate only for
+    // the case of point 1: it starts from a neighbour, unlike that of point 0
+    assert_int_equal(choose_estimated(&stiffness, like), 3 * 9 + 1);
     assert_int_equal(like[3], 2);
     const struct error_study runs = open_study(moduli, "{of: speed, keys: [nodes, shedding_interval]}");
-    assert_int_equal(error_plan_choose_estimated(runs.sweep, like), 3 * 8);
-    assert_int_equal(choose_estimated(&stiffness, like), 3 * 8 + 1);
+    assert_int_equal(error_plan_choose_estimated(runs.sweep, like), 3 * 9);
+    assert_int_equal(choose_estimated(&stiffness, like), 3 * 9 + 1);
     const struct error_study_key *const first = key_of(&stiffness.sweep->point[0], "fish.nodes"),
                                         *const second = key_of(&stiffness.sweep->point[1], "fish.nodes");
     for (int i = 0; i < 4; i++) assert_int_equal(like[second->member[i]], like[first->member[i]]);
@@ -427,8 +435,16 @@ TEST(the_error_is_the_sum_over_the_keys_and_covers_the_true_one) {
     NEAR(key_of(&study, "fish.sheet_points")->part[0].error, of_sheet, 0, 1e-6);
     NEAR(key_of(&study, "time.shedding_interval")->part[0].error, of_interval, 0, 1e-6);
     assert_int_equal(key_of(&study, "solver.rtol")->part[0].verdict, CONVERGENCE_NONE);
-    NEAR(study.error[0], of_nodes + of_sheet + of_interval, 0, 1e-6);
-    NEAR(study.error[1], 2 * cost * study.error[0], 0, 1e-6);
+    // the shifts have one sign; the finest levels together have the sheet of the nodes, 97 points instead of 69. The
+    // spreads are independent, and the value has its noise
+    const double spread = sqrt(pow(0.25 * nodes_error / (48.0 * 48), 2) + pow(0.25 * sheet_error / 68, 2) +
+                               pow(0.25 * interval_error * 0.005, 2));
+    const double shift =
+        nodes_error / (24.0 * 24) + sheet_error * (1.0 / 48 + 1.0 / 68 - 1.0 / 96) + interval_error * 0.01;
+    NEAR(study.shift[0], -shift, 0, 1e-6);
+    NEAR(study.of_noise[0], study.noise * study.value[0], 0, 1e-9);
+    NEAR(study.error[0], shift + spread + study.of_noise[0], 0, 1e-6);
+    NEAR(study.error[1], 2 * cost * (shift + spread) + study.of_noise[1], 0, 1e-6);
     ABOVE(study.error[0], study.value[0] - speed);
     NEAR(study.value[0], setting(&study, 0, "fish.nodes") > 0 ? members[0].value[2 * study.quantity[0]] : 0, 0, 0);
     // the distance of every search is 5 times the residual
@@ -452,7 +468,14 @@ TEST(errors_of_other_keys_are_shared_along_a_sweep) {
     const double value = sweep->point[2].value[0], before = sheet->part[0].error;
     ABOVE(before, 0);
     NEAR(sweep->point[1].shared[0], before / value * sweep->point[1].value[0], 0, 1e-9);
-    NEAR(sweep->point[1].error[0], sweep->point[0].error[0], 0, 1e-6);
+    // which have no member with all finest levels
+    assert_int_equal(sweep->point[1].finest, -1);
+    ABOVE(sweep->point[2].finest, 0);
+    NEAR(sweep->point[1].error[0],
+         nodes_error / (24.0 * 24) + interval_error * 0.01 +
+             hypot(0.25 * nodes_error / (48.0 * 48), 0.25 * interval_error * 0.005) + sweep->point[1].of_noise[0] +
+             sweep->point[1].shared[0],
+         0, 1e-6);
 
     // the next coarser level is off: the levels turn, and the error is the largest difference
     set_value(&members[sheet->member[2]], "steady_speed", 1.03 * value);
@@ -479,7 +502,7 @@ TEST(a_stated_level_beyond_the_judged_ones_has_its_own_value) {
     convergence_study_judge(&study, members);
     assert_int_equal(key->part[0].verdict, CONVERGENCE_ACCEPTED);
     NEAR(study.value[0], speed + 40e-5, 1e-12, 0);
-    NEAR(study.error[0], 40 * (1e-5 - 1e-9) + 1.25 * 40 * 1e-9, 1e-10, 0);
+    NEAR(study.error[0], 40 * (1e-5 - 1e-9) + 1.25 * 40 * 1e-9 + 1e-5 * study.value[0], 1e-10, 0);
 }
 
 /* The report of a judged study, until the end of the test. */
@@ -509,6 +532,35 @@ static void contains(const char *text, const char *part) {
     if (!strstr(text, part)) fail_msg("no \"%s\" in\n%s", part, text);
 }
 
+/* Two keys with errors a and b that act together, by a b: each alone does not show it. */
+TEST(what_two_keys_do_together_is_a_part_of_the_error) {
+    struct error_study study = open_study(UNIFORM, "{of: steady_speed, keys: [sheet_points, shedding_interval]}");
+    struct member_file *const members = make_members(&study);
+    const double apart = 0.2 / 48 + 0.01, finest = 0.2 / 68 + 0.005, both = 400 * 0.2 / 48 * 0.01;
+    for (int m = 0; m < sweep_n_members(study.study); m++) {
+        const double a = 0.2 / (setting(&study, m, "fish.sheet_points") - 1),
+                     b = setting(&study, m, "time.shedding_interval");
+        set_value(&members[m], "steady_speed", speed + a + b - 400 * a * b);
+    }
+    convergence_study_judge(&study, members);
+    NEAR(study.value[0], speed + apart - both, 0, 1e-12);
+
+    // the finest levels lead to their values together, and from there each key to its own limit
+    const struct convergence_result *const sheet = key_of(&study, "fish.sheet_points")->part,
+                                           *const interval = key_of(&study, "time.shedding_interval")->part;
+    const double of_sheet = 0.2 / 68 * (1 - 400 * 0.01), of_interval = 0.005 * (1 - 400 * 0.2 / 48);
+    NEAR(study.value[0] + study.shift[0], speed + finest - 400 * 0.2 / 68 * 0.005 - of_sheet - of_interval, 0, 1e-9);
+    NEAR(study.error[0], fabs(study.shift[0]) + hypot(sheet->spread, interval->spread) + study.of_noise[0], 0, 1e-9);
+    NEAR(study.together[0], fabs(study.shift[0]) - fabs(sheet->shift + interval->shift), 1e-12, 0);
+    AT_LEAST(study.error[0], fabs(study.value[0] - speed));
+    contains(report_of(&study, members), "\ntogether ");
+
+    // it is unknown without that run
+    members[study.finest].status = "failed: a test";
+    convergence_study_judge(&study, members);
+    assert_true(isnan(study.error[0]));
+}
+
 /* The cost turns at 25 nodes, the differences of the speed fall. */
 TEST(a_flag_belongs_to_one_quantity_and_names_its_levels) {
     struct error_study study = open_study(UNIFORM, "{of: [steady_speed, steady_cost_of_transport], keys: [nodes]}");
@@ -521,7 +573,7 @@ TEST(a_flag_belongs_to_one_quantity_and_names_its_levels) {
     NEAR(key->part[0].error, nodes_error * (0.25 / (48.0 * 48) + 1 / (24.0 * 24)), 0, 1e-6);
 
     const char *const text = report_of(&study, members);
-    contains(text, "fish.nodes  17 [25] 35 49  0.0017    2.0  0.11");
+    contains(text, "fish.nodes  17 [25] 35 49   0.0017    2.0  0.11");
     contains(text, "flagged: fish.nodes: cost_of_transport of fish1: differences change sign at 25\n");
     assert_null(strstr(text, "speed of fish1: differences"));
 
@@ -734,7 +786,7 @@ TEST(choices_of_the_model_are_not_in_the_sum) {
     set_value(&members[key_of(&study, "wake.smoothing")->member[0]], "steady_speed", 2.5);
     convergence_study_judge(&study, members);
     NEAR(key_of(&study, "wake.smoothing")->part[0].error, 2.5 - study.value[0], 0, 1e-12);
-    NEAR(study.error[0], 0, 1e-12, 0);
+    NEAR(study.error[0], study.noise * study.value[0], 1e-12, 0);
     contains(report_of(&study, members), "choices, not in the sum: wake.smoothing ([0.1] 0.05) ");
 }
 
@@ -921,7 +973,7 @@ TEST(other_models_bound_the_value) {
     set_value(&members[force->member[0]], "steady_speed", 2.5);
     set_value(&members[key_of(&study, "fish.drag.transition")->member[0]], "steady_speed", 0.5);
     convergence_study_judge(&study, members);
-    NEAR(study.error[0], 0, 1e-12, 0);
+    NEAR(study.error[0], study.noise * study.value[0], 1e-12, 0);
     NEAR(study.lowest[0].value, 0.5, 0, 1e-12);
     NEAR(study.highest[0].value, 2.5, 0, 1e-12);
     const char *const text = report_of(&study, members);
@@ -959,27 +1011,32 @@ TEST(a_report_is_printed_whole) {
     set_value(&members[key_of(&study, "wake.smoothing")->member[0]], "steady_speed", 1.6);
     set_value(&members[key_of(&study, "wake.taper")->member[0]], "steady_cost_of_transport", 0.0825);
     convergence_study_judge(&study, members);
-    is_printed(report_of(&study, members),
-               "steady_speed of fish1: 1.5060 +- 0.0062 m s-1 (0.41 %)\n"
-               "steady_cost_of_transport of fish1: 0.08096 +- 0.00099 m s-2 (1.2 %)\n"
-               "key                     levels                    speed  order     %  share  cost_of_transport  order  "
-               "   %  share        by  next\n"
-               "fish.nodes              17 [25] 35 49            0.0017    2.0  0.11     27            0.00027    2.0  "
-               "0.33     27  4 levels\n"
-               "time.shedding_interval  0.04 0.02 [0.01] 0.005   0.0045    1.0  0.30     73            0.00072    1.0  "
-               "0.89     73  4 levels  <- spend here: shedding_interval 0.005, CPU x 2, cost_of_transport +-0.82 %\n"
-               "solver.rtol             0.0001 [1e-05] 1e-06    0.00000   none  0.00      0            0.00000   none  "
-               "0.00      0  3 levels\n"
-               "sum                                              0.0062         0.41                   0.00099         "
-               "1.22\n"
-               "noise of a value, of integrator and search: 1.0e-05\n"
-               "choices, not in the sum: wake.smoothing ([0.1] 0.05) 6.2 %; wake.taper ([0.6] 0.3) 1.9 %\n");
+    is_printed(
+        report_of(&study, members),
+        "steady_speed of fish1: 1.5060 +- 0.0061 m s-1 (0.4 %)\n"
+        "steady_cost_of_transport of fish1: 0.08096 +- 0.00097 m s-2 (1.2 %)\n"
+        "key                     levels                     speed  order      %  share  cost_of_transport  order      "
+        "%  share        by  next\n"
+        "fish.nodes              17 [25] 35 49             0.0017    2.0   0.11     27            0.00027    2.0   "
+        "0.33     27  4 levels\n"
+        "time.shedding_interval  0.04 0.02 [0.01] 0.005    0.0045    1.0   0.30     73            0.00072    1.0   "
+        "0.89     73  4 levels  <- spend here: shedding_interval 0.005, CPU x 2, cost_of_transport +-0.81 %\n"
+        "solver.rtol             0.0001 [1e-05] 1e-06     0.00000   none   0.00      0            0.00000   none   "
+        "0.00      0  3 levels\n"
+        "noise                                            0.00002          0.00                  0.000001          "
+        "0.00\n"
+        "cancelled                                       -0.00009         -0.01                 -0.000014         "
+        "-0.02\n"
+        "sum                                               0.0061          0.40                   0.00097          "
+        "1.20\n"
+        "noise of a value, of integrator and search: 1.0e-05\n"
+        "choices, not in the sum: wake.smoothing ([0.1] 0.05) 6.2 %; wake.taper ([0.6] 0.3) 1.9 %\n");
 
     char csv[4096];
     read_csv(&study, sizeof csv, csv);
     static const char rows[] =
         "fish,quantity,unit,value,key,levels,order,error,percent,verdict\n"
-        "\"fish1\",steady_speed,m s-1,1.50597917,sum,,nan,0.00616,0.409,\"\"\n"
+        "\"fish1\",steady_speed,m s-1,1.50597917,sum,,nan,0.00609,0.404,\"\"\n"
         "\"fish1\",steady_speed,m s-1,1.50597917,fish.nodes,17 [25] 35 49,2,0.00166,0.11,\"accepted\"\n"
         "\"fish1\",steady_speed,m s-1,1.50597917,time.shedding_interval,0.04 0.02 [0.01] 0.005,1,0.0045,0.299,"
         "\"accepted\"\n"
@@ -995,5 +1052,5 @@ TEST(a_report_is_printed_whole) {
         set_value(&members[m], "steady_speed", -member_file_number(&members[m], "steady_speed", 0));
     }
     convergence_study_judge(&study, members);
-    contains(report_of(&study, members), "steady_speed of fish1: -1.5060 +- 0.0062 m s-1 (0.41 %)\n");
+    contains(report_of(&study, members), "steady_speed of fish1: -1.5060 +- 0.0061 m s-1 (0.4 %)\n");
 }
