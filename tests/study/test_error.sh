@@ -188,6 +188,9 @@ check no_numerical_key_is_varied eval '! grep -q "fish.nodes" out'
 check the_value_has_no_error_bar grep -qE '^steady_lift of foil: [0-9.]+ N$' out
 check density_and_modulus_make_1 python "$root/tests/study/sums.py" lift steady_lift 1 fish.body.modulus=1 fluid.density=1
 check length_makes_2 python "$root/tests/study/sums.py" lift steady_lift 2 fish.length=1
+# the plan measures members before it forks them: with threads of its own they would wait for these forever
+timeout -s KILL 100 "$program" error swimmer.yaml --of steady_speed --sensitivity=modulus -o threaded --set error=none --set solver.threads=2 >/dev/null 2>&1
+check members_with_threads_run_after_their_estimate test "$?" = 0
 # the reactive swimmer has no viscosity: times scale with the beat, also the interval that it is tied to
 run error swimmer.yaml --of steady_speed --of steady_cost_of_transport --sensitivity=wave.frequency,modulus,length,suction \
     -o swims --set error=none
