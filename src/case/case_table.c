@@ -344,7 +344,7 @@ const struct key case_table[] = {
      .synonyms = "residual accuracy"},
     {"steady.beats", INTEGER, AT(steady.beats), "200", FROM_TO(3, MAX_STEPS), "",
      .meaning = "the search fails after this many beats", .synonyms = "max_beats limit"},
-    {"steady.output_beats", INTEGER, AT(steady.output_beats), "2", FROM_TO(1, MAX_STEPS), "",
+    {"steady.output_beats", INTEGER, AT(steady.output_beats), "2", FROM_TO(0, MAX_STEPS), "",
      .meaning = "number of beats in the result, from the steady state on", .synonyms = "last_beats"},
     {"steady.formation", CHOICE, AT(steady.formation), "false", ANY, "",
      .meaning = "true: also find steady positions of the other fish relative to the first one",

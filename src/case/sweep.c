@@ -75,6 +75,20 @@ int sweep_member_before(const struct case_values *study, int member) {
     return -1;
 }
 
+const struct sweep_neighbours *sweep_member_neighbours(const struct case_values *study, int member) {
+    const bool has_neighbours = study->n_axes == 1 && study->sweep[0].neighbours;
+    return has_neighbours && study->sweep[0].neighbours[member].n > 0 ? &study->sweep[0].neighbours[member] : NULL;
+}
+
+bool sweep_member_is_start(const struct case_values *study, int member) {
+    bool is_start = false;
+    for (int m = 0; m < sweep_n_members(study); m++) {
+        const struct sweep_neighbours *const neighbours = sweep_member_neighbours(study, m);
+        is_start |= neighbours && neighbours->value[0] == member;
+    }
+    return is_start;
+}
+
 int sweep_find_value(const struct sweep_axis *axis, const char *wanted) {
     double number, value;
     if (strcmp(wanted, "first") == 0) return 0;

@@ -18,16 +18,26 @@ struct sweep_key {
     bool is_number;   /* each value is one number */
 };
 
+/* Neighbours of a value: the search starts from the whole state of the value `before`, which is the first of them, with
+ * the slow quantities that an extrapolation gives. */
+enum { SWEEP_NEIGHBOURS = 3 };
+struct sweep_neighbours {
+    int n; /* 0: the search starts from the speeds and places of the value `before` alone */
+    int value[SWEEP_NEIGHBOURS];
+    double weight[SWEEP_NEIGHBOURS]; /* their sum is 1 */
+};
+
 /* One axis of a sweep: changes one key, or several keys together. */
 struct sweep_axis {
     int n_keys;
     struct sweep_key *key; /* (n_keys) */
     int n_values;
-    char **value;         /* value i of key k is value[i * n_keys + k], as --set takes it, "": of the case
+    char **value; /* value i of key k is value[i * n_keys + k], as --set takes it, "": of the case
                              (n_values * n_keys) */
-    bool refine;          /* the values are resolutions of the first key: a study of convergence */
-    bool steady;          /* members are steady states; each search starts from the state of the previous value */
-    int *before;          /* start from the state of this value instead, -1: start of the case; NULL     (n_values) */
+    bool refine;  /* the values are resolutions of the first key: a study of convergence */
+    bool steady;  /* members are steady states; each search starts from the state of the previous value */
+    int *before;  /* start from the state of this value instead, -1: start of the case; NULL     (n_values) */
+    struct sweep_neighbours *neighbours; /* NULL: none                                                     (n_values) */
     bool *is_against;     /* run the case of error.against; NULL: no value does                            (n_values) */
     bool is_relative;     /* the results of all members are also divided by those of the members with one value: */
     int relative_to;      /* the number of that value */
@@ -52,6 +62,11 @@ int sweep_member_value(const struct case_values *study, int member, int axis);
  * member with the previous value of that axis; -1 for the first value, and for all values that are starts. */
 bool sweep_is_steady(const struct case_values *study);
 int sweep_member_before(const struct case_values *study, int member);
+
+/* The neighbours of a member of a study with one axis; NULL: none. And whether the whole state of a member is the start
+ * of others. */
+const struct sweep_neighbours *sweep_member_neighbours(const struct case_values *study, int member);
+bool sweep_member_is_start(const struct case_values *study, int member);
 
 /* The number of a value of the first key of an axis: the value is "first", or an equal number, or the same text; -1:
  * there is none. */

@@ -16,6 +16,7 @@
 #include "school/diagnostics_energy.h"
 #include "school/warnings.h"
 #include "steady/steady_modes.h"
+#include "steady/steady_neighbour.h"
 #include "steady/steady_problem.h"
 #include "steady/steady_search.h"
 #include "steady/steady_start.h"
@@ -40,12 +41,43 @@ struct run {
     struct steady_problem problem;
     struct steady_multipliers multipliers;
     struct steady_values found;
+    struct steady_fish *last, *before; /* means over the last two beats        (n_fish) */
     struct record record;
     char warnings[4 * WARNING_BYTES]; /* lines about the state that was found */
 };
 
+// keep the means over the last beat
+static void keep_means(struct run *run) {
+    const struct simulation *const simulation = run->simulation;
+    struct steady_fish *const oldest = run->before;
+    run->before = run->last;
+    run->last = oldest;
+    for (int f = 0; f < simulation->school->n_fish; f++) {
+        const struct steady_beat *const beat = &run->problem.map.last[f];
+        const struct diagnostics_fish *const now = &simulation->diagnostics->fish[f];
+        run->last[f] = (struct steady_fish){.speed = beat->speed,
+                                            .turn = beat->turn * 180 / M_PI,
+                                            .place = {beat->place[0], beat->place[1]},
+                                            .force = {beat->force[0], beat->force[1]},
+                                            .thrust = now->mean_thrust,
+                                            .drag = NAN,
+                                            .lift = NAN,
+                                            .deflection = NAN,
+                                            .actuation_power = beat->actuation,
+                                            .damping_power = beat->damping,
+                                            .constraint_power = beat->driving,
+                                            .fluid_power = beat->fluid,
+                                            .power = now->mean_power,
+                                            .cost_of_transport = now->cost_of_transport,
+                                            .efficiency = now->efficiency,
+                                            .towed_efficiency = now->towed_efficiency,
+                                            .strouhal = now->strouhal};
+    }
+}
+
 static void report_progress(const struct steady_problem *problem, void *data) {
-    const struct run *const run = data;
+    struct run *const run = data;
+    keep_means(run);
     if (!run->options->progress) return;
     const struct steady_progress progress = {.n_beats = problem->map.n_beats,
                                              .max_beats = run->values->steady.beats,
@@ -114,40 +146,28 @@ static enum status write_if_due(void *data) {
 // write the last beats, which start from the steady state; energy balance and closest approach cover these rows only
 static enum status write_beats(struct run *run) {
     struct simulation *const simulation = run->simulation;
-    const int n_beats = run->problem.map.n_beats;
+    const int n_beats = run->problem.map.n_beats, n_output = run->values->steady.output_beats;
     diagnostics_restart(simulation->residual, simulation->state);
     run->record.first = simulation->state->event;
-    run->record.n_events = run->record.first + run->values->steady.output_beats * run->problem.map.events;
+    run->record.n_events = run->record.first + n_output * run->problem.map.events;
 
     TRY(write_if_due(run));
-    for (int i = 0; i < run->values->steady.output_beats; i++) {
+    for (int i = 0; i < n_output; i++) {
         TRY(steady_map_beat(&run->problem.map, write_if_due, run));
+        keep_means(run);
     }
 
     run->problem.map.n_beats = n_beats;
-    run->found.residual = larger(run->found.residual, steady_map_residual(&run->problem.map));
+    if (n_output > 0) run->found.residual = larger(run->found.residual, steady_map_residual(&run->problem.map));
 
-    // the means over the last beat
+    // the means over the last beat; those of two beats say where the slow disturbance that is left leads to
+    const double multiplier = run->problem.multiplier;
+    const double further = isnan(multiplier) ? 0 : multiplier / (1 - multiplier);
     for (int f = 0; f < simulation->school->n_fish; f++) {
-        const struct steady_beat *const beat = &run->problem.map.last[f];
-        const struct diagnostics_fish *const last = &simulation->diagnostics->fish[f];
-        run->found.fish[f] = (struct steady_fish){.speed = beat->speed,
-                                                  .turn = beat->turn * 180 / M_PI,
-                                                  .place = {beat->place[0], beat->place[1]},
-                                                  .force = {beat->force[0], beat->force[1]},
-                                                  .thrust = last->mean_thrust,
-                                                  .drag = NAN,
-                                                  .lift = NAN,
-                                                  .deflection = NAN,
-                                                  .actuation_power = beat->actuation,
-                                                  .damping_power = beat->damping,
-                                                  .constraint_power = beat->driving,
-                                                  .fluid_power = beat->fluid,
-                                                  .power = last->mean_power,
-                                                  .cost_of_transport = last->cost_of_transport,
-                                                  .efficiency = last->efficiency,
-                                                  .towed_efficiency = last->towed_efficiency,
-                                                  .strouhal = last->strouhal};
+        double *const found = (double *)&run->found.fish[f];
+        const double *const last = (const double *)&run->last[f], *const before = (const double *)&run->before[f];
+        const int n_means = sizeof run->found.fish[f] / sizeof *found;
+        for (int i = 0; i < n_means; i++) found[i] = last[i] + (further > 0 ? further * (last[i] - before[i]) : 0);
     }
 
     return STATUS_OK;
@@ -240,7 +260,7 @@ static enum status steady_find(struct run *run, bool is_static) {
     }
 
     TRY(run->options->hold ? hold(run) : steady_search_run(&run->problem));
-    run->found.residual = steady_map_residual(&run->problem.map);
+    run->found.residual = steady_problem_residual(&run->problem);
     run->found.stiffness = NAN;
 
     // correct the state by the multipliers until the speed is near the fixed point
@@ -257,6 +277,9 @@ static enum status steady_find(struct run *run, bool is_static) {
     steady_modes_of_multipliers(&run->found, run->problem.map.period);
     run->found.n_beats = run->problem.map.n_beats;
     tell_point(run, true);
+    if (run->options->state) {
+        TRY(steady_neighbour_write(run->arena, run->options->state, run->values, run->simulation));
+    }
     return write_beats(run);
 }
 
@@ -303,12 +326,15 @@ static enum status find_and_write(struct run *run) {
     TRY(target_check(options->path, TARGET_NETCDF, options->overwrite));
     if (options->from) TRY(target_refuse_input(options->path, options->from));
 
-    // start from the initial values of the case, or from another steady state
+    // start from the initial values of the case, from another steady state, or from the whole state of a neighbour
     struct case_values values = *run->values;
     if (options->from) {
         TRY(steady_start_read(run->arena, options->from, &run->values->school, &values.school.fish));
     }
-    const enum status started = simulate_start(run->arena, &run->simulation, &values, options->stop);
+    const struct steady_neighbours *const neighbours = options->neighbours;
+    const enum status started = neighbours
+                                    ? steady_neighbour_start(run->arena, &run->simulation, &values, neighbours->state)
+                                    : simulate_start(run->arena, &run->simulation, &values, options->stop);
     if (started == STATUS_STOPPED) {
         return status_fail(started, "stopped %s before the search: start the search again",
                            simulate_stopped_by(options->stop));
@@ -320,18 +346,22 @@ static enum status find_and_write(struct run *run) {
     const bool is_static = steady_static_applies(school);
     TRY(refuse_school(&values.steady, school));
     if (!is_static) TRY(steady_problem_create(&run->problem, &run->values->steady, run->simulation));
+    run->problem.is_near = neighbours != NULL;
+    if (neighbours && !is_static) TRY(steady_neighbour_predict(&run->problem, neighbours));
     run->problem.progress = report_progress;
     run->problem.data = run;
     const int n_fish = run->simulation->school->n_fish, n = STEADY_QUANTITIES * n_fish;
     run->found.growth = run->found.growth_frequency = run->found.amplification = NAN;
     NEW(run->arena, run->found.fish, n_fish);
+    NEW(run->arena, run->last, n_fish);
+    NEW(run->arena, run->before, n_fish);
     NEW(run->arena, run->found.mode, 2 * n * n);
     NEW(run->arena, run->found.rate, n);
     NEW(run->arena, run->found.omega, n);
 
     // the largest number of events bounds the number of vortices in the file
     const long n_beats = run->values->steady.beats + run->values->steady.output_beats;
-    const long n_events = is_static ? 1 : n_beats * run->problem.map.events;
+    const long n_events = is_static ? 1 : run->simulation->state->event + n_beats * run->problem.map.events;
     const struct result_origin origin = {.path = options->path,
                                          .overwrite = options->overwrite,
                                          .values = run->values,

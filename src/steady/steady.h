@@ -33,11 +33,22 @@ struct steady_point {
     double real, imaginary, error;
 };
 
+/* Steady states of cases that differ from this one in one number. The search starts from the whole state of the first
+ * (steady_neighbour.h), with the slow quantities that follow from the results of all of them. */
+struct steady_neighbours {
+    const char *state; /* file of the state of the first neighbour, as steady_options.state has written it */
+    int n;
+    const char *const *result; /* (n) */
+    const double *weight;      /* of a result in an extrapolation to this case; their sum is 1         (n) */
+};
+
 struct steady_options {
-    const char *path;      /* of the result file */
-    const char *from;      /* steady result that supplies the initial speeds and positions; NULL: values of the case */
-    int overwrite;         /* replace an existing result */
-    bool judges_stability; /* the caller asks for the stability: no warning if the state is unstable */
+    const char *path; /* of the result file */
+    const char *from; /* steady result that supplies the initial speeds and positions; NULL: values of the case */
+    const struct steady_neighbours *neighbours; /* neighbours to start from, instead of `from`; NULL: none */
+    const char *state;                          /* file that gets the whole state, for neighbours; NULL: none */
+    int overwrite;                              /* replace an existing result */
+    bool judges_stability;           /* the caller asks for the stability: no warning if the state is unstable */
     const struct steady_point *hold; /* hold these slow quantities until the wake has settled, instead of a search, and
                                         take the result for the steady state; NULL: search */
     struct steady_point *found;      /* gets the steady state; may be NULL */

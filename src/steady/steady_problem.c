@@ -46,7 +46,7 @@ enum status steady_problem_create(struct steady_problem *problem, const struct c
     const struct school *const school = simulation->school;
     struct arena *const arena = simulation->arena;
     const size_t most = STEADY_QUANTITIES * (size_t)school->n_fish;
-    *problem = (struct steady_problem){.settings = settings};
+    *problem = (struct steady_problem){.settings = settings, .multiplier = NAN};
     TRY(steady_map_create(&problem->map, simulation));
     problem->map.is_formation = settings->formation == YES;
     TRY(steady_problem_refuse(settings, school));
@@ -144,6 +144,17 @@ static enum status steady_problem_put_quantities(struct steady_problem *problem,
         is_elsewhere |= fabs(add[i]) > 1e-12 * steady_map_scale(&problem->map, unknown[i]);
     }
     return is_elsewhere ? steady_map_add(&problem->map, n, unknown, add) : STATUS_OK;
+}
+
+double steady_problem_residual(const struct steady_problem *problem) {
+    const struct steady_map *const map = &problem->map;
+    if (isnan(problem->multiplier)) return steady_map_residual(map);
+    const int n = map->n_beats + STEADY_RECENT;
+    const double speed[] = {problem->recent[n % STEADY_RECENT], problem->recent[(n - 1) % STEADY_RECENT],
+                            problem->recent[(n - 2) % STEADY_RECENT]};
+    const double left = speed[0] - speed[1] - problem->multiplier * (speed[1] - speed[2]);
+    const double turn = fabs(map->last[0].turn - map->before[0].turn) / (10 * 2 * M_PI);
+    return larger(fabs(left) / steady_map_scale(map, (struct steady_unknown){0, STEADY_SPEED}), turn);
 }
 
 void steady_problem_read(const struct steady_problem *problem, double *value) {

@@ -17,10 +17,13 @@ struct steady_problem {
     int n_pins; /* unknowns fixed during the solution for the speed of the first fish: all speeds equal this speed,
                          places and headings of a formation equal the initial values (n_pins) */
     struct steady_unknown *pin;
-    double *pinned;   /* (n_pins) */
-    double *scratch;  /* (4 n_unknowns) */
-    double *jacobian; /* of a formation: derivatives of the change per beat by the unknowns, in the scales of the
+    double *pinned;    /* (n_pins) */
+    double *scratch;   /* (4 n_unknowns) */
+    double *jacobian;  /* of a formation: derivatives of the change per beat by the unknowns, in the scales of the
                          unknowns, by columns; NULL: not evaluated yet (n_unknowns, n_unknowns) */
+    bool is_near;      /* the simulation began with the whole state of a neighbour */
+    double multiplier; /* of a disturbance of the speed of the only fish, as a neighbour has it: the result is
+                          extrapolated with it; NAN: unknown */
     double recent[STEADY_RECENT]; /* speed of the first fish in the last beats, beat n at n % STEADY_RECENT, m s-1 */
     /* called after each beat of the search; may be NULL */
     void (*progress)(const struct steady_problem *problem, void *data);
@@ -45,6 +48,11 @@ void steady_problem_read(const struct steady_problem *problem, double *value);
 
 /* Set the unknowns to these values, over the scales. Fails as steady_map_add.                    (n_unknowns) */
 enum status steady_problem_put(struct steady_problem *problem, const double *to);
+
+/* The largest change between the last two beats, as steady_map_residual. With a multiplier, the change of the speed is
+ * that part which a slow disturbance does not explain, whose changes in two beats have this ratio. This is the residual
+ * of the extrapolated result, in which the disturbance has decayed. */
+double steady_problem_residual(const struct steady_problem *problem);
 
 /* Set all pinned speeds to this speed, m s-1, and all other pins to the initial values. Fails as steady_map_add. */
 enum status steady_problem_put_pins(struct steady_problem *problem, double speed);

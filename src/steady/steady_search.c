@@ -126,6 +126,11 @@ static const double margin = 0.5, sharper = 0.3;
 /* Change per beat over the tolerance above which the beats diverge. */
 static const double lost = 10;
 
+/* A search from the state of a neighbour has no wake to grow, and knows the slope from the neighbour's multipliers.
+ * After one beat it takes Newton steps with this slope, because the wake still changes in these beats, which a secant
+ * would count as the effect of the speed; only after CHORDS beats it takes secants. */
+enum { CHORDS = 8 };
+
 /* SPEED_ITERATIONS: iterations of Newton's method for the speed alone. TRIES: attempts for the speed alone, none for a
  * circling fish. TRIES_TOGETHER: subsequent attempts for all slow quantities; afterwards the fish swims until the state
  * is steady. AGED: beats of an evaluation for all slow quantities, because the other quantities have a long memory. */
@@ -141,6 +146,7 @@ struct search {
     struct state *found; /* last solution for a formation; NULL: none */
     struct state *begun; /* state before the last attempt for the speed alone; NULL: none */
     bool has_failed;     /* a beat failed */
+    int n_chords;        /* beats in which the slope stays */
     struct steady_unknown speed;
     double scale;        /* m s-1 */
     double step;         /* largest change of the speed in one Newton step, in lengths per beat */
@@ -163,7 +169,7 @@ static enum status try_beat(struct search *search, double speed, double *change)
     const double way = speed - search->from;
 
     // integration errors dominate the secant of a shorter step
-    if (fabs(way) > 1e-3 * search->scale) {
+    if (fabs(way) > 1e-3 * search->scale && search->problem->map.n_beats > search->n_chords) {
         search->slope = fmin(least_slope, fmax(-1, (*change - search->change) / way));
     }
 
@@ -265,6 +271,12 @@ static enum status swim_freely(struct search *search, bool *is_steady) {
         TRY(steady_problem_beat(problem));
         change = steady_map_residual(&problem->map);
         *is_steady = larger(before, change) <= tolerance;
+
+        // of a result that is extrapolated, two free beats must agree about the slow disturbance that is left
+        if (isfinite(problem->multiplier)) {
+            *is_steady = i > 0 && change <= ROUGH * tolerance && steady_problem_residual(problem) <= tolerance;
+        }
+
         // the change from a beat with held quantities to the first free beat has no meaning
         is_lost = search->found && i > 0 && !(change <= lost * tolerance);
     }
@@ -289,11 +301,11 @@ static enum status run_search(struct search *search) {
     // the first beats: the muscle ramp ends and the wake grows
     const struct steady_map *const map = &search->problem->map;
     double change;
-    const int n_beats = ramp_beats(map) + 2;
+    const int n_beats = problem->is_near ? 1 : ramp_beats(map) + 2;
     for (int i = 0; i < n_beats; i++) TRY(try_beat(search, speed_now(search), &change));
 
     // solve for a common speed of a formation at the initial places first, then for all unknowns
-    if (problem->map.is_formation) {
+    if (problem->map.is_formation && !problem->is_near) {
         if (problem->solves_speed) TRY(solve_speed(search));
         TRY(steady_problem_put_pins(problem, speed_now(search)));
     }
@@ -356,6 +368,13 @@ enum status steady_search_run(struct steady_problem *problem) {
     struct search search = {
         .problem = problem, .speed = {0, STEADY_SPEED}, .slope = first_slope, .step = longest_step, .margin = margin};
     search.scale = steady_map_scale(&problem->map, search.speed);
+    if (problem->is_near) {
+        search.from = speed_now(&search);
+        if (isfinite(problem->multiplier)) {
+            search.slope = problem->multiplier - 1;
+            search.n_chords = CHORDS;
+        }
+    }
 
     // the speed of a circling fish depends on slip and turn, which have a memory of several beats
     const struct school *const school = problem->map.simulation->school;

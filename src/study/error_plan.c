@@ -209,13 +209,13 @@ static struct row make_row(const struct error_study *study, int n, const struct 
 
         if (companion && !is_choice) row_set(&row, companion, 0, part * plan_number_of(values, companion, 0));
 
-        // a small change of a quantity needs a small error of the search, and only the last beat counts; the fish beats
-        // with the same number of events
+        // a small change of a quantity needs a small error of the search, and the means over the last beat suffice; the
+        // fish beats with the same number of events
         const bool is_beat = moves_beat(key->row);
         if (is_model_input) {
             const double most = values->steady.formation == YES ? INFINITY : input_tolerance;
             row_set(&row, "steady.tolerance", 0, fmin(values->steady.tolerance, most));
-            row_set(&row, "steady.output_beats", 0, 1);
+            row_set(&row, "steady.output_beats", 0, 0);
         }
         if (strcmp(path, "time.shedding_interval") != 0 && !is_beat) continue;
         if (is_beat) row_set(&row, "time.shedding_interval", 0, values->school.shedding_interval / part);
@@ -241,10 +241,12 @@ static int row_append(struct error_sweep *sweep, char *const *value, int before,
     const size_t n = (size_t)axis->n_keys, m = (size_t)axis->n_values;
     GROW(sweep->arena, axis->value, n * (m + 1));
     GROW(sweep->arena, axis->before, m + 1);
+    GROW(sweep->arena, axis->neighbours, m + 1);
     GROW(sweep->arena, axis->is_against, m + 1);
     axis->is_against[m] = is_against;
     memcpy(axis->value + n * m, value, n * sizeof *axis->value);
     axis->before[m] = before;
+    axis->neighbours[m].n = 0;
     return axis->n_values++;
 }
 
@@ -693,22 +695,64 @@ static int choose_finest(struct error_study *study) {
     return is_new;
 }
 
+/* Let the search of an input's level start from the state of the level before it, level `from`, with an extrapolation
+ * through the SWEEP_NEIGHBOURS nearest levels that have members. */
+static void add_neighbours(struct error_study *study, const struct error_study_key *key, int level, int from) {
+    struct sweep_neighbours *const neighbours = &study->study->sweep[0].neighbours[key->member[level]];
+    double place[SWEEP_NEIGHBOURS];
+    bool is_used[ERROR_STUDY_LEVELS] = {false};
+    is_used[level] = true;
+    for (int n = 0, next = from; n < SWEEP_NEIGHBOURS && next >= 0; n++) {
+        is_used[next] = true;
+        neighbours->value[n] = key->member[next];
+        place[n] = key->value[next];
+        neighbours->n = n + 1;
+        next = -1;
+        for (int i = 0; i < key->n_levels; i++) {
+            if (is_used[i] || key->member[i] < 0) continue;
+            const bool is_nearer = next < 0 || fabs(key->value[i] - key->value[level]) <
+                                                   fabs(key->value[next] - key->value[level]) * (1 - 1e-9);
+            if (is_nearer) next = i;
+        }
+    }
+    for (int i = 0; i < neighbours->n; i++) {
+        neighbours->weight[i] = 1;
+        for (int j = 0; j < neighbours->n; j++) {
+            if (j != i) neighbours->weight[i] *= (key->value[level] - place[j]) / (place[i] - place[j]);
+        }
+    }
+}
+
+/* Add the member of a level, unless the level has one; returns whether it is new. */
+static bool add_level(struct error_study *study, int k, int level) {
+    struct error_study_key *const key = &study->key[k];
+    if (key->n_levels == 1 || level < 0 || level >= key->n_levels || key->member[level] >= 0) return false;
+
+    // the search starts from the neighbour towards the stated level, which already has a member
+    const int from = level + (level < key->stated ? 1 : level > key->stated ? -1 : 0);
+    const int before = level == key->stated ? study->base : key->member[from];
+    bool is_new;
+    key->member[level] =
+        error_plan_member(study, 1, &(struct error_plan_change){k, key->value[level]}, before, &is_new);
+    const bool has_beat = study->is_steady && !study->is_static;
+    if (is_new && has_beat && key->row->kind == SWEEP_INPUT) add_neighbours(study, key, level, from);
+    return is_new;
+}
+
 int error_plan_members(struct error_study *study) {
     int n_new = 0;
     for (int distance = 0; distance < ERROR_STUDY_LEVELS; distance++) {
         for (int k = 0; k < study->n_keys; k++) {
-            struct error_study_key *const key = &study->key[k];
-            const int levels[] = {key->stated - distance, key->stated + distance};
-            for (int i = 0; i < (distance > 0 ? 2 : 1) && key->n_levels > 1; i++) {
-                const int level = levels[i];
-                if (level < 0 || level >= key->n_levels || key->member[level] >= 0) continue;
+            if (study->key[k].row->kind == SWEEP_INPUT && distance > 0) continue;
+            n_new += add_level(study, k, study->key[k].stated - distance);
+            if (distance > 0) n_new += add_level(study, k, study->key[k].stated + distance);
+        }
 
-                // the search starts from the neighbour towards the stated level, which already has a member
-                const int before = distance == 0 ? study->base : key->member[level + (level < key->stated ? 1 : -1)];
-                bool is_new;
-                key->member[level] =
-                    error_plan_member(study, 1, &(struct error_plan_change){k, key->value[level]}, before, &is_new);
-                n_new += is_new;
+        // one side of all inputs first, because the other side starts from an extrapolation through it
+        for (int side = -1; side <= 1 && distance > 0; side += 2) {
+            for (int k = 0; k < study->n_keys; k++) {
+                if (study->key[k].row->kind != SWEEP_INPUT) continue;
+                n_new += add_level(study, k, study->key[k].stated + side * distance);
             }
         }
     }

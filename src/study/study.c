@@ -100,15 +100,32 @@ static enum status run_member(const struct study *study, const struct job *job) 
     // a steady state starts from the steady state of the preceding member, if any
     if (sweep_is_steady(study->values)) {
         const int before = sweep_member_before(study->values, job->member);
+        const struct sweep_neighbours *const near = sweep_member_neighbours(study->values, job->member);
+        const char *result[SWEEP_NEIGHBOURS];
+        for (int i = 0; near && i < near->n; i++) result[i] = study_folder_member(arena, folder, near->value[i], ".nc");
+        const struct steady_neighbours neighbours = {
+            .state = study_folder_member(arena, folder, before < 0 ? 0 : before, STUDY_FOLDER_STATE),
+            .n = near ? near->n : 0,
+            .result = result,
+            .weight = near ? near->weight : NULL};
+        const bool is_start = sweep_member_is_start(study->values, job->member);
         struct steady_options search = {
             .path = path,
             .from = before < 0 ? study->options->from : study_folder_member(arena, folder, before, ".nc"),
+            .neighbours = near ? &neighbours : NULL,
+            .state = is_start ? study_folder_member(arena, folder, job->member, STUDY_FOLDER_STATE) : NULL,
             .overwrite = 1,
             .command = command,
             .progress = member_report_beats,
             .data = job->report,
             .stop = study->options->stop};
-        const enum status status = steady_run(values, &search);
+        enum status status = steady_run(values, &search);
+
+        // a neighbour failed, or leads nowhere: start from the speeds and places of the preceding member
+        if (near && (status == STATUS_FILE || status == STATUS_SOLVER)) {
+            search.neighbours = NULL;
+            status = steady_run(values, &search);
+        }
         if (status != STATUS_FILE || before < 0) return status;
 
         // the preceding member failed or has not run: start from the initial values of the case
@@ -226,10 +243,13 @@ static enum status run_until_all_end(struct study *study) {
         // a member that starts from the result of a running member waits
         for (int j = 0; j < study->n_jobs && !study->is_stopping && status == STATUS_OK; j++) {
             if (study->job[j].process || study->n_next == study->plan.n) continue;
-            const int before = sweep_member_before(study->values, study->plan.member[study->n_next]);
+            const int next = study->plan.member[study->n_next], before = sweep_member_before(study->values, next);
+            const struct sweep_neighbours *const near = sweep_member_neighbours(study->values, next);
             bool waits = false;
             for (int k = 0; k < study->n_jobs; k++) {
-                waits |= study->job[k].process && study->job[k].member == before;
+                if (!study->job[k].process) continue;
+                waits |= study->job[k].member == before;
+                for (int i = 0; near && i < near->n; i++) waits |= study->job[k].member == near->value[i];
             }
             if (!waits) status = member_start(study, &study->job[j]);
         }

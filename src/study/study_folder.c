@@ -249,8 +249,9 @@ static enum status clear_surplus(struct arena *arena, const struct case_values *
         const char *const ending = entry->d_name + length, *const path =
                                                                study_folder_path(arena, folder, entry->d_name);
         const bool is_result = strcmp(ending, ".nc") == 0;
-        const bool is_beside =
-            strcmp(ending, ".failed") == 0 || (strcmp(ending, ".ckpt") == 0 && target_is(path, TARGET_CHECKPOINT));
+        const bool is_beside = strcmp(ending, ".failed") == 0 ||
+                               ((strcmp(ending, ".ckpt") == 0 || strcmp(ending, STUDY_FOLDER_STATE) == 0) &&
+                                target_is(path, TARGET_CHECKPOINT));
         struct member_file member;
         if (study->error && (is_beside || is_result)) {
             const char *const result = study_folder_member(arena, folder, number, ".nc");

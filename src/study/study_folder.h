@@ -2,6 +2,7 @@
  * tests/study/test_study.sh and test_study_folder.c.
  *
  *     FOLDER/member-0000.nc       result of a member, with the study and the number of the member
+ *     FOLDER/member-0000.state    whole state of a steady state from which other searches start
  *     FOLDER/member-0003.failed   reason of the failure of a member
  *     FOLDER/study.nc             final values of the members, gathered from the member files */
 #ifndef STUDY_FOLDER_H
@@ -20,6 +21,8 @@ enum status study_folder_create(const char *folder);
 
 /* Remove the folder and all files in the folder. */
 void study_folder_remove(const char *folder);
+
+#define STUDY_FOLDER_STATE ".state"
 
 /* The path of a file in the folder, or of a member file with an ending such as ".nc". */
 char *study_folder_path(struct arena *arena, const char *folder, const char *name);

@@ -201,6 +201,14 @@ check times_make_the_speed python "$root/tests/study/sums.py" swims steady_speed
 check times_make_the_cost python "$root/tests/study/sums.py" swims steady_cost_of_transport 2 fish.wave.frequency=1 fish.body.modulus=2
 check lengths_make_the_speed python "$root/tests/study/sums.py" swims steady_speed 1 fish.length=1 fish.body.modulus=2
 sed -n '/^steady_speed/,$p' out >table
+# a search that starts from the whole state of a neighbour has no wake to grow: from speeds and places it takes 8 to 15 beats
+beats() { run info "$1" && sed -n 's/.*steady state after \([0-9]*\) beats.*/\1/p' out; }
+are_short() {
+    for member in swims/member-*.nc; do
+        test "$member" = swims/member-0000.nc || test "$(beats "$member")" -le 6 || return 1
+    done
+}
+check searches_from_whole_states_are_short are_short
 run gather swims
 check gather_has_the_sensitivities cmp out table
 run info swims/study.nc
@@ -216,6 +224,13 @@ touch taken-error
 refused a_file_is_no_folder 4 'shoal: error: taken-error: cannot create this folder' error foil.yaml --of steady_lift -o taken-error
 refused no_state_to_start_from 4 '--from none.nc: cannot be read' error swimmer.yaml --of steady_speed --from none.nc -o none
 refused a_run_has_no_search 2 '--from table: starts a search' error swimmer.yaml --of speed --from table -o none
+run error swimmer.yaml --of steady_speed --of steady_cost_of_transport --sensitivity=wave.frequency,modulus,length -o serial \
+    --set error=none -j 1
+check the_number_of_processes_changes_nothing cmp swims/error.csv serial/error.csv
+rm serial/member-0000.state serial/member-0001.nc
+run error swimmer.yaml --of steady_speed --of steady_cost_of_transport --sensitivity=wave.frequency,modulus,length -o serial \
+    --set error=none -j 1
+check without_the_state_a_search_starts_from_speeds_and_places eval 'test "$code" = 0 && test "$(beats serial/member-0001.nc)" -gt 6'
 run error swimmer.yaml --of steady_speed --sensitivity=modulus --from swims/member-0000.nc --set error=none -o again
 check a_start_changes_no_more_than_the_errors python "$root/tests/study/started.py"
 # numbers of one fish: the changes by those of each fish add to that by those of all
