@@ -535,8 +535,8 @@ static void write_levels(const struct error_study *study, const struct error_stu
     if (length < LEVEL_BYTES) snprintf(text + length, (size_t)(LEVEL_BYTES - length), "%s", key->unit);
 }
 
-/* The estimated CPU time of a member, s; NaN if the estimate fails. On one thread: a process that is forked after OpenMP has
- * started threads, as the members are, would wait for them forever. */
+/* The estimated CPU time of a member, s; NaN if the estimate fails. On one thread: a process that is forked after
+ * OpenMP has started threads, as the members are, would wait for them forever. */
 static enum status estimate_member(const struct error_sweep *sweep, int m, double seconds, double *duration) {
     struct arena *const scratch = arena_create(sweep->arena, "the estimate of a member");
     const struct error_study *const first = &sweep->point[0];
