@@ -86,6 +86,7 @@ static const char *const assignments[] = {
     "wake.decay=0.2",
     "wake.lifetime=0.02; wake.decay=0.015",
     "wake.lifetime=0.02; wake.decay=0.015; wake.removed_circulation=dropped",
+    "fish[1].wake_lifetime=0.8; wake.lifetime=0.02; wake.decay=0.015",
     "r wake.shedding=continuous",
     "r wake.shedding=continuous; sheet.kutta=rate",
     "r wake.shedding=impulsive",
