@@ -629,6 +629,21 @@ static void list_objections(struct error_study *study, const struct school *scho
 
 // ---- the plan
 
+/* Room for the numbers of all quantities of all fish. */
+static void create_numbers(struct arena *arena, struct error_study *study) {
+    const int n = study->n_asked * study->n_fish;
+    NEW(arena, study->value, n);
+    NEW(arena, study->error, n);
+    NEW(arena, study->shift, n);
+    NEW(arena, study->of_noise, n);
+    NEW(arena, study->together, n);
+    NEW(arena, study->parts, n);
+    NEW(arena, study->inputs, n);
+    NEW(arena, study->shared, n);
+    NEW(arena, study->lowest, n);
+    NEW(arena, study->highest, n);
+}
+
 /* Set the requested quantities of a point. */
 static enum status choose_quantities(struct error_study *study) {
     const struct sweep_error *const error = study->study->error;
@@ -661,17 +676,7 @@ static enum status choose_quantities(struct error_study *study) {
         study->quantity[study->n_asked++] = q;
     }
 
-    const int n = study->n_asked * study->n_fish;
-    NEW(study->sweep->arena, study->value, n);
-    NEW(study->sweep->arena, study->error, n);
-    NEW(study->sweep->arena, study->shift, n);
-    NEW(study->sweep->arena, study->of_noise, n);
-    NEW(study->sweep->arena, study->together, n);
-    NEW(study->sweep->arena, study->parts, n);
-    NEW(study->sweep->arena, study->inputs, n);
-    NEW(study->sweep->arena, study->shared, n);
-    NEW(study->sweep->arena, study->lowest, n);
-    NEW(study->sweep->arena, study->highest, n);
+    create_numbers(study->sweep->arena, study);
     return STATUS_OK;
 }
 
@@ -935,16 +940,7 @@ static struct error_sweep *create_comparison(struct error_sweep *sweep, enum err
         to->relation = relation;
         to->point = from;
         to->twin = twin;
-        NEW(arena, to->value, n);
-        NEW(arena, to->error, n);
-        NEW(arena, to->shift, n);
-        NEW(arena, to->of_noise, n);
-        NEW(arena, to->together, n);
-        NEW(arena, to->parts, n);
-        NEW(arena, to->inputs, n);
-        NEW(arena, to->shared, n);
-        NEW(arena, to->lowest, n);
-        NEW(arena, to->highest, n);
+        create_numbers(arena, to);
         bool have_finest = from->finest >= 0 && twin->finest >= 0;
         for (int k = 0; k < twin->n_keys; k++) {
             have_finest &= !has_finer(&twin->key[k]) || key_in(from, twin->key[k].row);
