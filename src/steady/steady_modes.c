@@ -105,133 +105,200 @@ void steady_modes_of_multipliers(struct steady_values *found, double period) {
 
 // ---- multipliers
 
-/* Increment of a slow quantity, in the scale of the quantity, over the distance per beat in lengths, and limits of the
- * increment: smaller increments drown in the noise of the wakes, of larger ones the error is the curvature of the map.
- * After a failure, such as an overlap of two fish, the increment is smaller by the factor shorter. */
-static const double disturbance = 0.04, smallest = 0.02, largest = 0.06, shorter = 0.25, least_disturbance = 1e-3;
+/* Change of a slow quantity, in the scale of the quantity, over the distance per beat in lengths, and limits of the
+ * change. After a failure, such as an overlap of two fish, the change is smaller by the factor shorter. */
+static const double disturbance = 0.04, smallest = 0.02, largest = 0.06, shorter = 0.25, least_disturbance = 2e-4;
 
-/* MEMORY: beats of the response of one fish, which is lost in the noise after two, unless a control law remembers more.
- * MOST_MEMORY: with the beats in which the wake of the first fish reaches the last one. SAMPLES: of the errors of the
- * responses. */
-enum { MEMORY = 3, MOST_MEMORY = 12, SAMPLES = 16 };
+/* MEMORY: beats of the response of one fish, and by so many the memory grows, once if it is longer than SHORT_MEMORY.
+ * MOST_MEMORY: of all. SAMPLES: of the noise of the responses. */
+enum { MEMORY = 3, SHORT_MEMORY = 12, MOST_MEMORY = 24, SAMPLES = 16 };
 
-/* With a control law the memory becomes longer by MEMORY if its last beat changes the largest multiplier by more than
- * this, and by more than the noise does. */
-static const double forgotten = 0.01;
+/* The changes become smaller, or the memory of several fish longer, if that changes the modulus of the largest
+ * multiplier by more than telling and by more than the noise does. A control law remembers for long, but in a
+ * memory that is too long the noise has multipliers of its own: with a law the memory grows only for more than
+ * telling_of_law. */
+static const double telling = 0.002, telling_of_law = 0.01;
 
 /* Central differences have two sizes, the first of which is twice the second. */
 enum { SIZES = 2 };
 
-struct disturbances {
-    struct steady_problem *problem;
-    int n_memory;
-    double size;                       /* of an increment, in the scale of the quantity */
-    struct state *kept;                /* undisturbed state */
-    double *start, *to;                /* unknowns of the kept state, and at the start of a beat      (n_unknowns) */
-    double *base;                      /* unknowns after each undisturbed beat            (n_unknowns, n_memory) */
-    double *sizes;                     /* the larger size of each unknown                             (n_unknowns) */
-    double *central, *second;          /* differences and half sums less the base, of each size
-                                          (n_unknowns, n_memory, n_unknowns, SIZES) */
-    double *above, *below;             /*                                                 (n_unknowns, n_memory) */
-    double *response, *error, *sample; /* and its error                     (n_unknowns, n_unknowns, n_memory) */
+/* The beats that follow a change of one unknown; all later beats begin with the unknowns of the kept state, so that
+ * what changes in them is the memory of the wake. */
+struct series {
+    int unknown;       /* -1: none changes */
+    double change;     /* in the scale of the quantity */
+    int n_beats;       /* so far */
+    double *seen;      /* unknowns after each beat                       (n_unknowns, MOST_MEMORY) */
+    struct state *end; /* after the last beat */
 };
 
-// increase unknown j (-1: none) for one beat; every later beat starts with the unknowns of the kept state again, so
-// that its change is the memory of the wake
-static enum status follow_disturbance(struct disturbances *all, int j, double size, double *seen) {
+struct disturbances {
+    struct arena *arena;
+    struct steady_problem *problem;
+    int n_memory;
+    struct state *kept; /* undisturbed state */
+    double *start, *to; /* unknowns of the kept state, and at the start of a beat                      (n_unknowns) */
+    double *sizes;      /* larger change of each unknown                                               (n_unknowns) */
+    struct series base; /* without a change */
+    struct series *series;  /* increase and decrease by both sizes                           (n_unknowns, SIZES, 2) */
+    double *central[SIZES]; /* differences by both sizes              (n_unknowns, n_unknowns, n_memory), as the rest */
+    double *response;       /* their extrapolation */
+    double *error, *sample; /* its noise, and response with a sample of it */
+};
+
+static struct series *series_of(const struct disturbances *all, int j, int s) {
+    return all->series + 2 * (s + SIZES * j);
+}
+
+// begin the series s of unknown j anew
+static void begin_series(const struct disturbances *all, int j, int s) {
+    const double change = all->sizes[j] / (1 << s);
+    for (int i = 0; i < 2; i++) {
+        struct series *const series = series_of(all, j, s) + i;
+        series->unknown = j;
+        series->change = i == 0 ? change : -change;
+        series->n_beats = 0;
+    }
+}
+
+static void set_size(const struct disturbances *all, int j, double size) {
+    all->sizes[j] = size;
+    for (int s = 0; s < SIZES; s++) begin_series(all, j, s);
+}
+
+// half of the sizes: the smaller changes become the larger ones
+static void halve_sizes(const struct disturbances *all) {
+    for (int j = 0; j < all->problem->n_unknowns; j++) {
+        struct series *const larger_one = series_of(all, j, 0), *const smaller_one = series_of(all, j, 1);
+        for (int i = 0; i < 2; i++) {
+            const struct series old = larger_one[i];
+            larger_one[i] = smaller_one[i];
+            smaller_one[i] = old;
+        }
+        all->sizes[j] /= 2;
+        begin_series(all, j, 1);
+    }
+}
+
+static enum status follow_series(const struct disturbances *all, struct series *series) {
     struct steady_problem *const problem = all->problem;
     const int n = problem->n_unknowns;
-    TRY(steady_map_return(problem->map.simulation, all->kept));
-    for (int m = 0; m < all->n_memory; m++) {
+    if (series->n_beats >= all->n_memory) return STATUS_OK;
+    TRY(steady_map_return(problem->map.simulation, series->n_beats > 0 ? series->end : all->kept));
+    for (; series->n_beats < all->n_memory; series->n_beats++) {
         memcpy(all->to, all->start, (size_t)n * sizeof *all->to);
-        if (m == 0 && j >= 0) all->to[j] += size;
+        if (series->n_beats == 0 && series->unknown >= 0) all->to[series->unknown] += series->change;
         TRY(steady_problem_put(problem, all->to));
         TRY(steady_map_beat(&problem->map, NULL, NULL));
-        steady_problem_read(problem, seen + m * n);
+        steady_problem_read(problem, series->seen + n * series->n_beats);
     }
+    steady_map_save(all->arena, problem->map.simulation, &series->end);
     return STATUS_OK;
 }
 
-// differences of both sizes of unknown j
-static enum status take_differences(struct disturbances *all, int j, double size) {
-    const int n = all->problem->n_unknowns, n_seen = n * all->n_memory;
-    all->sizes[j] = size;
-    for (int s = 0; s < SIZES; s++, size /= 2) {
-        double *const central = all->central + n_seen * (j + n * s), *const second = all->second + n_seen * (j + n * s);
-        TRY(follow_disturbance(all, j, size, all->above));
-        TRY(follow_disturbance(all, j, -size, all->below));
-        for (int i = 0; i < n_seen; i++) {
-            central[i] = (all->above[i] - all->below[i]) / (2 * size);
-            second[i] = (all->above[i] + all->below[i]) / 2 - all->base[i];
-        }
-    }
-    return STATUS_OK;
-}
-
-/* With the standard deviation e of an unknown after a beat, which is noise of the wake, central(h) differs from
- * central(h/2) by the truncation 3/4 c h^2 and by noise of the variance 5/2 (e/h)^2, and second(h) - 4 second(h/2), in
- * which the curvature cancels, has the variance 35/2 e^2. The part of the difference that is truncation is extrapolated
- * to h = 0; the error has the noise and what is left of the truncation. A leader that does not feel its follower has no
- * noise when the follower is disturbed, so that each response has its own e. */
-static enum status find_responses(struct disturbances *all) {
-    const int n = all->problem->n_unknowns, n_seen = n * all->n_memory, n_values = n * n_seen;
-    TRY(follow_disturbance(all, -1, 0, all->base));
-    for (int j = 0; j < n; j++) {
-        for (double size = all->size;; size *= shorter) {
-            const enum status status = take_differences(all, j, size);
+// follow all series up to the end of the memory
+static enum status follow_all(struct disturbances *all) {
+    TRY(follow_series(all, &all->base));
+    for (int j = 0; j < all->problem->n_unknowns; j++) {
+        for (;;) {
+            enum status status = STATUS_OK;
+            for (int k = 0; k < 2 * SIZES && status == STATUS_OK; k++) {
+                status = follow_series(all, series_of(all, j, 0) + k);
+            }
             if (status == STATUS_OK) break;
-            if (status == STATUS_STOPPED || size * shorter < least_disturbance) return status;
-        }
-    }
-
-    double difference = 0, noise_of_difference = 0;
-    for (int k = 0; k < n_values; k++) {
-        const double apart = all->central[k + n_values] - all->central[k];
-        const double noise = (all->second[k] - 4 * all->second[k + n_values]) / all->sizes[k / n_seen];
-        difference += apart * apart;
-        noise_of_difference += 2.5 * noise * noise / 17.5;
-    }
-    const double part = difference > noise_of_difference ? 1 - noise_of_difference / difference : 0, way = 4 * part / 3;
-
-    for (int j = 0; j < n; j++) {
-        for (int i = 0; i < n_seen; i++) {
-            const int k = i + n_seen * j, to = i % n + n * (j + n * (i / n));
-            const double apart = all->central[k + n_values] - all->central[k];
-            const double noise = (all->second[k] - 4 * all->second[k + n_values]) / all->sizes[j];
-            const double variance = noise * noise / 17.5 * ((1 - way) * (1 - way) / 2 + 2 * way * way);
-            all->response[to] = all->central[k] + way * apart;
-            all->error[to] = hypot(sqrt(variance), (4.0 / 3 - way) * sqrt(part) * apart);
+            if (status == STATUS_STOPPED || all->sizes[j] * shorter < least_disturbance) return status;
+            set_size(all, j, all->sizes[j] * shorter);
         }
     }
     return STATUS_OK;
 }
 
-/* Twice the root mean square deviation of the moduli under errors of random sign, and at least the effect of the last
- * beat of the memory. A multiplier below its error has decayed: 0. is_short: whether the memory, and not the noise,
- * limits the largest multiplier. */
+/* With the standard deviation e of an unknown after a beat, which is noise of the wake and of the solver,
+ * central(h) differs from central(h/2) by the truncation 3/4 c h^2 and by noise of the variance 5/2 (e/h)^2. The
+ * half sum of an increase and a decrease less the undisturbed beat, second(h), tells e: second(h) - 4 second(h/2),
+ * in which the curvature cancels, has the variance 35/2 e^2. What an increase and a decrease have in common is in
+ * second but not in central, so that the noise of an element is at most what explains the difference of its
+ * centrals. A leader that does not feel its follower has no noise when the follower is disturbed, so that each
+ * element has its own e. */
+static void find_responses(const struct disturbances *all) {
+    const int n = all->problem->n_unknowns;
+    double difference = 0, noise_of_difference = 0;
+    for (int j = 0; j < n; j++) {
+        const double size = all->sizes[j];
+        for (int i = 0; i < n; i++) {
+            double apart_squared = 0, noise_squared = 0;
+            for (int m = 0; m < all->n_memory; m++) {
+                const int from = i + n * m, to = i + n * (j + n * m);
+                double second[SIZES];
+                for (int s = 0; s < SIZES; s++) {
+                    const struct series *const series = series_of(all, j, s);
+                    const double above = series[0].seen[from], below = series[1].seen[from];
+                    all->central[s][to] = (above - below) / (2 * series->change);
+                    second[s] = (above + below) / 2 - all->base.seen[from];
+                }
+                all->error[to] = (second[0] - 4 * second[1]) / (size * sqrt(17.5));
+                noise_squared += all->error[to] * all->error[to];
+                apart_squared += pow(all->central[1][to] - all->central[0][to], 2);
+            }
+            const bool is_common = 2.5 * noise_squared > apart_squared;
+            const double part = is_common ? sqrt(apart_squared / (2.5 * noise_squared)) : 1;
+            for (int m = 0; m < all->n_memory; m++) all->error[i + n * (j + n * m)] *= part;
+            difference += apart_squared;
+            noise_of_difference += is_common ? apart_squared : 2.5 * noise_squared;
+        }
+    }
+
+    // the part of the difference that is truncation is extrapolated
+    const double part = difference > 0 ? 1 - noise_of_difference / difference : 0, way = 4 * part / 3;
+    for (int k = 0; k < n * n * all->n_memory; k++) {
+        all->response[k] = all->central[0][k] + way * (all->central[1][k] - all->central[0][k]);
+        all->error[k] *= sqrt((1 - way) * (1 - way) / 2 + 2 * way * way);
+    }
+}
+
+/* The bar of a modulus is twice its root mean square deviation under noise of random sign, the change from one size
+ * to the other, and the change by one of the last beats of the memory, in quadrature. A multiplier below its error
+ * has decayed: 0. noise, sizes, memory: the three of the largest multiplier. */
 static enum status find_errors(struct arena *arena, const struct disturbances *all, struct steady_multipliers *found,
-                               bool *is_short) {
-    const int n = all->problem->n_unknowns, n_values = n * n * all->n_memory;
-    double *real, *imaginary;
+                               double *noise, double *sizes, double *memory) {
+    const int n = all->problem->n_unknowns, n_last = all->n_memory > MEMORY + 1 ? 2 : 1;
+    double *real, *imaginary, *of[SIZES];
     uint64_t random = 1;
     NEW(arena, real, n);
     NEW(arena, imaginary, n);
+    for (int s = 0; s < SIZES; s++) NEW(arena, of[s], n);
+
     memset(found->error, 0, (size_t)n * sizeof *found->error);
-    for (int s = 0; s <= SAMPLES; s++) {
-        for (int i = 0; i < n_values; i++) {
+    for (int s = 0; s < SAMPLES; s++) {
+        for (int k = 0; k < n * n * all->n_memory; k++) {
             random = random * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-            all->sample[i] = all->response[i] + (random >> 63 ? all->error[i] : -all->error[i]);
+            all->sample[k] = all->response[k] + (random >> 63 ? all->error[k] : -all->error[k]);
         }
-        const bool is_shorter = s == SAMPLES;
-        TRY(newton_multipliers(arena, n, all->n_memory - is_shorter, is_shorter ? all->response : all->sample, real,
-                               imaginary, NULL));
+        TRY(newton_multipliers(arena, n, all->n_memory, all->sample, real, imaginary, NULL));
         for (int i = 0; i < n; i++) {
-            const double away = fabs(hypot(real[i], imaginary[i]) - hypot(found->real[i], found->imaginary[i]));
-            if (is_shorter && i == 0) *is_short = away > larger(forgotten, sqrt(found->error[i]));
-            found->error[i] =
-                is_shorter ? larger(sqrt(found->error[i]), away) : found->error[i] + 4 * away * away / SAMPLES;
+            const double away = hypot(real[i], imaginary[i]) - hypot(found->real[i], found->imaginary[i]);
+            found->error[i] += 4 * away * away / SAMPLES;
         }
     }
+    *noise = sqrt(found->error[0]);
+
+    for (int s = 0; s < SIZES; s++) {
+        TRY(newton_multipliers(arena, n, all->n_memory, all->central[s], real, imaginary, NULL));
+        for (int i = 0; i < n; i++) of[s][i] = hypot(real[i], imaginary[i]);
+    }
+    for (int i = 0; i < n; i++) found->error[i] += pow(of[1][i] - of[0][i], 2);
+    *sizes = fabs(of[1][0] - of[0][0]);
+
+    memset(of[0], 0, (size_t)n * sizeof *of[0]);
+    for (int m = 1; m <= n_last; m++) {
+        TRY(newton_multipliers(arena, n, all->n_memory - m, all->response, real, imaginary, NULL));
+        for (int i = 0; i < n; i++) {
+            const double size = hypot(found->real[i], found->imaginary[i]);
+            of[0][i] = larger(of[0][i], fabs(hypot(real[i], imaginary[i]) - size));
+        }
+    }
+    for (int i = 0; i < n; i++) found->error[i] = sqrt(found->error[i] + of[0][i] * of[0][i]);
+    *memory = of[0][0];
 
     for (int i = 0; i < n; i++) {
         const bool is_pair = found->imaginary[i] > 0 && i + 1 < n;
@@ -244,6 +311,33 @@ static enum status find_errors(struct arena *arena, const struct disturbances *a
         i += is_pair;
     }
     return STATUS_OK;
+}
+
+// the multipliers, from changes that are small enough and a memory that is long enough
+static enum status follow_until_known(struct disturbances *all, struct steady_multipliers *found) {
+    const struct school *const school = all->problem->map.simulation->school;
+    const int n = all->problem->n_unknowns;
+    const int grown = all->n_memory + MEMORY, most = grown > SHORT_MEMORY ? grown : SHORT_MEMORY;
+    double forgotten = school->n_fish > 1 ? telling : INFINITY;
+    for (int f = 0; f < school->n_fish; f++) {
+        if (school->fish[f].control.law != CONTROL_NONE) forgotten = telling_of_law;
+    }
+    for (;;) {
+        TRY(follow_all(all));
+        find_responses(all);
+        TRY(newton_multipliers(all->arena, n, all->n_memory, all->response, found->real, found->imaginary,
+                               found->mode));
+        double noise, sizes, memory, least = INFINITY;
+        TRY(find_errors(all->arena, all, found, &noise, &sizes, &memory));
+        for (int j = 0; j < n; j++) least = smaller(least, all->sizes[j]);
+        if (sizes > larger(telling, noise) && least / 2 >= least_disturbance) {
+            halve_sizes(all);
+        } else if (memory > larger(forgotten, noise) && all->n_memory + MEMORY <= most) {
+            all->n_memory += MEMORY;
+        } else {
+            return STATUS_OK;
+        }
+    }
 }
 
 // the largest norm of the unknowns within some beats after a unit increment of one unknown
@@ -271,13 +365,11 @@ enum status steady_multipliers_find(struct arena *arena, struct steady_problem *
     struct simulation *const simulation = problem->map.simulation;
     struct arena *const scratch = arena_create(simulation->arena, "the multipliers");
     const int n = problem->n_unknowns, n_before = problem->map.n_beats;
-    struct disturbances all = {.problem = problem};
+    struct disturbances all = {.arena = scratch, .problem = problem};
 
     // the wake of the first fish reaches the last one after so many beats
     double least = 0, most = 0;
-    bool has_law = false;
     for (int f = 0; f < simulation->school->n_fish; f++) {
-        has_law |= simulation->school->fish[f].control.law != CONTROL_NONE;
         double ahead;
         steady_map_read(&problem->map, 1, &(struct steady_unknown){f, STEADY_AHEAD}, &ahead);
         least = smaller(least, ahead);
@@ -285,18 +377,19 @@ enum status steady_multipliers_find(struct arena *arena, struct steady_problem *
     }
     const double way = fabs(problem->map.last[0].speed) * problem->map.period;
     const double beats = (most - least) / way;
-    all.size = fmin(largest, fmax(smallest, disturbance * way / simulation->school->fish[0].length));
-    all.n_memory = MEMORY + (beats <= MOST_MEMORY - MEMORY ? (int)ceil(beats) : MOST_MEMORY - MEMORY);
-    const int n_seen = n * MOST_MEMORY, n_values = n * n_seen;
+    const double size = fmin(largest, fmax(smallest, disturbance * way / simulation->school->fish[0].length));
+    all.n_memory = MEMORY + (beats <= MOST_MEMORY - 2 * MEMORY ? (int)ceil(beats) : MOST_MEMORY - 2 * MEMORY);
+    const int n_series = 2 * SIZES * n, n_values = n * n * MOST_MEMORY;
 
     NEW(scratch, all.start, n);
     NEW(scratch, all.to, n);
-    NEW(scratch, all.base, n_seen);
     NEW(scratch, all.sizes, n);
-    NEW(scratch, all.central, SIZES * n_values);
-    NEW(scratch, all.second, SIZES * n_values);
-    NEW(scratch, all.above, n_seen);
-    NEW(scratch, all.below, n_seen);
+    NEW(scratch, all.series, n_series);
+    for (int k = 0; k < n_series; k++) NEW(scratch, all.series[k].seen, n * MOST_MEMORY);
+    all.base.unknown = -1;
+    NEW(scratch, all.base.seen, n * MOST_MEMORY);
+    for (int j = 0; j < n; j++) set_size(&all, j, size);
+    for (int s = 0; s < SIZES; s++) NEW(scratch, all.central[s], n_values);
     NEW(scratch, all.response, n_values);
     NEW(scratch, all.error, n_values);
     NEW(scratch, all.sample, n_values);
@@ -316,20 +409,10 @@ enum status steady_multipliers_find(struct arena *arena, struct steady_problem *
 
     steady_map_save(scratch, simulation, &all.kept);
     steady_problem_read(problem, all.start);
-    enum status status = STATUS_OK;
-    for (bool is_short = true; status == STATUS_OK && is_short;) {
-        status = find_responses(&all);
-        if (status == STATUS_OK) {
-            status =
-                newton_multipliers(scratch, n, all.n_memory, all.response, found->real, found->imaginary, found->mode);
-        }
-        if (status == STATUS_OK) status = find_errors(scratch, &all, found, &is_short);
-        if (!has_law || all.n_memory + MEMORY > MOST_MEMORY) break;
-        if (is_short) all.n_memory += MEMORY;
-    }
+    enum status status = follow_until_known(&all, found);
     if (status == STATUS_OK) {
         // the change of the last undisturbed beat
-        const double *const last = all.base + n * (all.n_memory - 1);
+        const double *const last = all.base.seen + n * (all.n_memory - 1);
         for (int i = 0; i < n; i++) all.to[i] = last[i] - all.start[i];
         newton_way(scratch, n, all.n_memory, all.response, all.to, found->way);
         found->amplification = find_amplification(scratch, &all);

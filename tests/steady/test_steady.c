@@ -202,6 +202,8 @@ TEST(a_law_with_a_long_memory_has_a_multiplier_without_its_error) {
     ABOVE(setup.multipliers.imaginary[0], 0.1);
     // with three beats the error is above 0.1
     BELOW(setup.multipliers.error[0], 0.01);
+    // 17 series of three beats, 8 with half of the size, and then three more beats of 17
+    assert_int_equal(setup.multipliers.n_beats, 3 * 17 + 3 * 8 + 3 * 17);
 }
 
 TEST(the_state_stays_where_its_multipliers_are_taken) {

@@ -115,6 +115,11 @@ TEST(fish_that_swim_freely_keep_the_place_that_is_found) {
     school_ok(steady_search_run(&setup.problem));
     const struct steady_beat found = setup.problem.map.last[1];
     NEAR(found.place[0], -1.4, 0.1, 0);
+    // the wake of the first fish reaches the second one in three beats; the multipliers need three more of all 41
+    // series
+    steady_setup_multipliers(&setup);
+    assert_int_equal(setup.multipliers.n_beats, 41 * (6 + 3));
+    BELOW(setup.multipliers.error[0], 0.01);
     AT_MOST(setup.problem.map.n_beats, 60);
     // the released follower keeps the place for some beats; an initial error of 0.1 lengths would drift by 0.05
     steady_setup_beats(&setup, 4);
