@@ -113,11 +113,11 @@ static const double disturbance = 0.04, smallest = 0.02, largest = 0.06, shorter
  * MOST_MEMORY: of all. SAMPLES: of the noise of the responses. */
 enum { MEMORY = 3, SHORT_MEMORY = 12, MOST_MEMORY = 24, SAMPLES = 16 };
 
-/* The changes become smaller, or the memory of several fish longer, if that changes the modulus of the largest
- * multiplier by more than telling and by more than the noise does. A control law remembers for long, but in a
- * memory that is too long the noise has multipliers of its own: with a law the memory grows only for more than
- * telling_of_law. */
-static const double telling = 0.002, telling_of_law = 0.01;
+/* The changes become smaller, or the memory longer, if that changes the modulus of the largest multiplier by more than
+ * telling and by more than the noise does. A memory that is too long consists of noise, which has multipliers of its
+ * own: that of several fish grows only if the noise is below quiet, and that of a control law, which remembers for
+ * long, only for changes of more than telling_of_law. */
+static const double telling = 0.002, quiet = 0.001, telling_of_law = 0.01;
 
 /* Central differences have two sizes, the first of which is twice the second. */
 enum { SIZES = 2 };
@@ -318,9 +318,12 @@ static enum status follow_until_known(struct disturbances *all, struct steady_mu
     const struct school *const school = all->problem->map.simulation->school;
     const int n = all->problem->n_unknowns;
     const int grown = all->n_memory + MEMORY, most = grown > SHORT_MEMORY ? grown : SHORT_MEMORY;
-    double forgotten = school->n_fish > 1 ? telling : INFINITY;
+    double forgotten = school->n_fish > 1 ? telling : INFINITY, loudest = quiet;
     for (int f = 0; f < school->n_fish; f++) {
-        if (school->fish[f].control.law != CONTROL_NONE) forgotten = telling_of_law;
+        if (school->fish[f].control.law != CONTROL_NONE) {
+            forgotten = telling_of_law;
+            loudest = INFINITY;
+        }
     }
     for (;;) {
         TRY(follow_all(all));
@@ -332,7 +335,7 @@ static enum status follow_until_known(struct disturbances *all, struct steady_mu
         for (int j = 0; j < n; j++) least = smaller(least, all->sizes[j]);
         if (sizes > larger(telling, noise) && least / 2 >= least_disturbance) {
             halve_sizes(all);
-        } else if (memory > larger(forgotten, noise) && all->n_memory + MEMORY <= most) {
+        } else if (memory > larger(forgotten, noise) && noise < loudest && all->n_memory + MEMORY <= most) {
             all->n_memory += MEMORY;
         } else {
             return STATUS_OK;
