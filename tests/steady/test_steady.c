@@ -200,6 +200,8 @@ TEST(a_law_with_a_long_memory_has_a_multiplier_without_its_error) {
                       "steady: {tolerance: 1e-4}\n"
                       "fish: [{" FISH ", control: {law: course, gain: 4, desired_heading: 0}}]\n");
     ABOVE(setup.multipliers.imaginary[0], 0.1);
+    // six beats without a halt between the third and the fourth have the same multiplier
+    NEAR(hypot(setup.multipliers.real[0], setup.multipliers.imaginary[0]), 0.9536, 0, 0.002);
     // with three beats the error is above 0.1
     BELOW(setup.multipliers.error[0], 0.01);
     // 17 series of three beats, 8 with half of the size, and then three more beats of 17
