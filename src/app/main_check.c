@@ -117,15 +117,14 @@ static void print_findings(const struct checked *checked) {
         return;
     }
 
-    // expect as large a part of the other members to fail as of those that were examined
     char duration[TEXT_DURATION_BYTES];
-    const int n_examined = checked->n_estimated + checked->n_failed;
     const double megabytes = 1e-6 * checked->bytes;
-    text_duration(duration, checked->seconds * checked->n_members / n_examined);
+    text_duration(duration,
+                  estimate_of_study(checked->seconds, checked->n_estimated, checked->n_failed, checked->n_members));
     printf("    %s about %s and %.*f MB on this machine%s: estimated from a few events",
            checked->is_study ? "the runs take" : "the run takes", duration, megabytes < 10, megabytes,
            checked->is_study ? ", one after the other" : "");
-    if (n_examined < checked->n_members)
+    if (checked->n_estimated + checked->n_failed < checked->n_members)
         printf(" of %d member%s", checked->n_estimated, checked->n_estimated == 1 ? "" : "s");
     printf(", often within a factor of two\n");
 }

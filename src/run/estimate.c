@@ -210,3 +210,7 @@ enum status estimate_run(struct simulation *simulation, double patience, struct 
     }
     return STATUS_OK;
 }
+
+double estimate_of_study(double seconds, int n_estimated, int n_failed, int n_members) {
+    return seconds * n_members / (n_estimated + n_failed);
+}

@@ -19,4 +19,9 @@ struct estimate {
  * Fails as simulate_step does if one of the first events fails; the run would fail at the same event. */
 enum status estimate_run(struct simulation *simulation, double patience, struct estimate *estimate);
 
+/* The CPU time [s] that all n_members runs of a study are expected to take, when those of n_estimated members take
+ * `seconds` together and n_failed others have failed in their first events, which takes no time: of the members that
+ * were not examined, as large a part is expected to fail. */
+double estimate_of_study(double seconds, int n_estimated, int n_failed, int n_members);
+
 #endif

@@ -186,3 +186,10 @@ TEST(every_wake_takes_memory) {
     const char *const text = "time: {end: 10000, shedding_interval: 0.01}\nwake: {lifetime: 10000}\n" FISH;
     NEAR(estimate_of(text, 0).bytes - peak_memory(), 2e6 * 370e6 / 2e5, 0, 0.1);
 }
+
+TEST(members_that_fail_take_no_time) {
+    NEAR(estimate_of_study(30, 15, 0, 15), 30, 0, 0);
+    NEAR(estimate_of_study(2, 1, 14, 15), 2, 0, 0);
+    // of 30 members, two have been examined: half of the others are expected to fail
+    NEAR(estimate_of_study(2, 1, 1, 30), 30, 0, 0);
+}
