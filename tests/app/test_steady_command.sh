@@ -76,6 +76,10 @@ check a_member_that_fails_is_no_end_of_the_study test "$code" = 1 -a -e axis-stu
 check members_are_steady_states test "$(beats axis-study/member-0000.nc)" -gt "$(beats axis-study/member-0001.nc)"
 check the_next_one_starts_as_the_case_says test "$(beats axis-study/member-0003.nc)" -gt "$(beats axis-study/member-0001.nc)"
 
+# a plate of 2 lengths a beat, whose changes the noise of the integrator must not hide
+run steady "$root/cases/heaving_plate.yaml" -q -o heaving.nc --set steady.beats=40 --set steady.multipliers=false
+check the_shipped_plate_finds_its_speed_within_40_beats test "$code" = 0
+
 # ---- without a beat: an equilibrium
 
 cat >plate.yaml <<'end'
