@@ -45,11 +45,19 @@ static const double certain = 2;
 /* A secant this short in the arclength ends the search for a threshold. */
 static const double shortest_secant = 1e-4;
 
+/* Least distance of the three states near a fold at which a finer branch is compared; the tolerance of the states would
+ * show in a parabola through closer ones. */
+static const double least_spacing = 0.02;
+
 static const char fold[] = "fold"; /* a label */
+
+/* Of the states: that of the case, or a finer one, which says what the discretisation adds to a bar. */
+enum discretisation { GIVEN, HALF_INTERVAL, FINER_BODIES };
 
 struct walk {
     const struct branch_options *options;
     const struct case_values *values;
+    enum discretisation discretisation;
     struct arena *arena;
     struct branch *branch;
     int n; /* slow quantities */
@@ -98,37 +106,27 @@ static enum status case_with(const struct walk *walk, struct arena *arena, struc
     return study_folder_parse(arena, values, walk->values->merged, walk->options->origin, n, assignments);
 }
 
-static const char *key_assignment(const struct walk *walk, struct arena *arena, double value) {
-    struct text assignment = {.arena = arena};
-    text_add(&assignment, "%s=", walk->options->key);
-    text_add_number(&assignment, value);
-    return assignment.text;
-}
-
+/* The case at a value of the key: as it is, with half the shedding interval, or with twice as many edges and panels of
+ * the sheets of all fish. */
 static enum status case_at(const struct walk *walk, struct arena *arena, struct case_values **values, double value) {
-    const char *const assignment = key_assignment(walk, arena, value);
-    return case_with(walk, arena, values, 1, &assignment);
-}
-
-/* The case at a value of the key with half the shedding interval, or with twice as many edges and panels of sheets. */
-static enum status finer_case_at(const struct walk *walk, struct arena *arena, struct case_values **values,
-                                 double value, bool has_finer_bodies) {
     const struct school_parameters *const school = &walk->values->school;
+    struct text key = {.arena = arena}, interval = {.arena = arena};
     const char **assignments;
     int n = 0;
     NEW(arena, assignments, 2 + 2 * school->n_fish);
-    if (!has_finer_bodies) {
-        struct text interval = {.arena = arena};
+    if (walk->discretisation == HALF_INTERVAL) {
         text_add(&interval, "time.shedding_interval=");
         text_add_number(&interval, school->shedding_interval / 2);
         assignments[n++] = interval.text;
     }
-    for (int f = 0; f < school->n_fish && has_finer_bodies; f++) {
+    for (int f = 0; f < school->n_fish && walk->discretisation == FINER_BODIES; f++) {
         const struct fish_parameters *const fish = &school->fish[f];
         assignments[n++] = arena_text(arena, "fish[%d].nodes=%d", f, 2 * fish->nodes - 1);
         assignments[n++] = arena_text(arena, "fish[%d].sheet_points=%d", f, 2 * fish->sheet_points - 1);
     }
-    assignments[n++] = key_assignment(walk, arena, value);
+    text_add(&key, "%s=", walk->options->key);
+    text_add_number(&key, value);
+    assignments[n++] = key.text;
     return case_with(walk, arena, values, n, assignments);
 }
 
@@ -384,22 +382,29 @@ static enum status add_between(struct walk *walk, int at, double arclength) {
     return add_point(walk, at + 1, x, arclength);
 }
 
+/* The vertex of the parabola through three points: how far it is from the second one, and what it gains over it. */
+static double vertex(const double *at, const double *value, double *gain) {
+    const double before = at[1] - at[0], after = at[2] - at[1];
+    const double slope_before = (value[1] - value[0]) / before, slope_after = (value[2] - value[1]) / after;
+    const double bend = (slope_after - slope_before) / (before + after);
+    const double slope = slope_before + bend * before, way = -slope / (2 * bend);
+    *gain = slope * way / 2;
+    return way;
+}
+
 /* Locate the fold near point number at, where the key comes farther than at both neighbours: by parabolas. */
 static enum status locate_fold(struct walk *walk, int at) {
     struct branch *const branch = walk->branch;
     const int k = walk->n;
     const double side = branch->point[at]->x[k] - branch->point[at - 1]->x[k];
     for (int i = 0; i < LOCATIONS; i++) {
-        const struct branch_point *const a = branch->point[at - 1], *const b = branch->point[at],
-                                         *const c = branch->point[at + 1];
-        const double before = b->arclength - a->arclength, after = c->arclength - b->arclength;
-        const double slope_before = (b->x[k] - a->x[k]) / before, slope_after = (c->x[k] - b->x[k]) / after;
-
-        // the vertex of the parabola, from b, and what the key gains up to there
-        const double bend = (slope_after - slope_before) / (before + after);
-        const double slope = slope_before + bend * before, way = -slope / (2 * bend);
-        if (fabs(slope * way / 2) <= walk->tolerance) break;
-        TRY(add_between(walk, way < 0 ? at - 1 : at, b->arclength + way));
+        const struct branch_point *const *const p = (const struct branch_point *const *)branch->point + at;
+        const double arclength[] = {p[-1]->arclength, p[0]->arclength, p[1]->arclength};
+        const double key[] = {p[-1]->x[k], p[0]->x[k], p[1]->x[k]};
+        double gain;
+        const double way = vertex(arclength, key, &gain);
+        if (fabs(gain) <= walk->tolerance) break;
+        TRY(add_between(walk, way < 0 ? at - 1 : at, arclength[1] + way));
         const int added = way < 0 ? at : at + 1, old = way < 0 ? at + 1 : at;
         at = (branch->point[added]->x[k] - branch->point[old]->x[k]) * side > 0 ? added : old;
     }
@@ -471,19 +476,23 @@ static enum status find_error_of_key(struct walk *walk, int at, double *error) {
     return is_coarse ? STATUS_OK : status;
 }
 
-/* How far the threshold moves with half the interval, or with finer bodies: twice the change of the excess that the
- * errors do not explain, over the slope, because the change is half of an error of first order. NaN: no finer state. */
+/* Whether a finer state that is not found leaves a part of the bar unknown, instead of ending the search. */
+static bool is_unknown(enum status status) {
+    return status != STATUS_OK && status != STATUS_STOPPED && status != STATUS_FILE;
+}
+
+/* How far a threshold moves with a finer discretisation: twice the change of the excess that the errors do not explain,
+ * over the slope, because the change is half of an error of first order. NaN: no finer state. */
 static enum status find_discretisation(struct walk *walk, const struct branch_point *point, double slope,
-                                       bool has_finer_bodies, double *error) {
+                                       double *error) {
     struct arena *const arena = walk->arena;
     const struct branch_options *const options = walk->options;
     ARENA(scratch, arena, "a finer state");
     const char *const path = study_folder_path(scratch, options->folder, "finer.nc");
-    const bool has_other_nodes = has_finer_bodies && walk->n == 0;
+    const bool has_other_nodes = walk->discretisation == FINER_BODIES && walk->n == 0;
     struct steady_point found = {.arena = scratch};
     struct case_values *values;
-    *error = NAN;
-    enum status status = finer_case_at(walk, scratch, &values, point->value, has_finer_bodies);
+    enum status status = case_at(walk, scratch, &values, point->value);
     if (status == STATUS_OK) {
         // the shape of an equilibrium is of its own nodes
         status = steady_run(
@@ -499,11 +508,67 @@ static enum status find_discretisation(struct walk *walk, const struct branch_po
                         .stop = options->stop});
         unlink(path);
     }
-    if (status == STATUS_STOPPED || status == STATUS_FILE) return status;
-    if (status != STATUS_OK || !isfinite(found.real)) return STATUS_OK;
+    if (is_unknown(status)) return STATUS_OK;
+    TRY(status);
+    if (!isfinite(found.real)) return STATUS_OK;
     const double change = fabs(excess_of(&found) - point->excess), noise = hypot(found.error, point->error);
     *error = change > noise ? 2 * sqrt(change * change - noise * noise) / fabs(slope) : 0;
     return STATUS_OK;
+}
+
+/* The last point before number at, or with a way of 1 the first one behind it, at a distance of at least least_spacing;
+ * beyond the ends -1 or n_points. */
+static int spaced_point(const struct branch *branch, int at, int way) {
+    const double arclength = branch->point[at]->arclength;
+    while (at >= 0 && at < branch->n_points && fabs(branch->point[at]->arclength - arclength) < least_spacing)
+        at += way;
+    return at;
+}
+
+/* How far a fold near point number at moves with a finer discretisation: three states of the branch are moved onto the
+ * finer one, all in planes normal to the way from the first to the last. The extremes of the key on the two parabolas
+ * differ by half of an error of first order. NaN: no finer states. */
+static enum status find_discretisation_of_fold(struct walk *walk, int at, double *error) {
+    const struct branch *const branch = walk->branch;
+    const int k = walk->n, size = k + 1, behind = spaced_point(branch, at, 1);
+    const int last = behind < branch->n_points ? behind : branch->n_points - 1, middle = spaced_point(branch, last, -1);
+    const int first = middle < 0 ? -1 : spaced_point(branch, middle, -1);
+    if (first < 0) return STATUS_OK;
+
+    ARENA(scratch, walk->arena, "a finer fold");
+    const struct branch_point *const points[] = {branch->point[first], branch->point[middle], branch->point[last]};
+    double *x, along[3], key[3], finer_key[3], gain, finer_gain;
+    NEW(scratch, x, size);
+    walk->has_last = false;
+    for (int i = 0; i < 3; i++) {
+        memcpy(x, points[i]->x, (size_t)size * sizeof *x);
+        const enum status status = correct_between(walk, x, points[0], points[2]);
+        if (is_unknown(status)) return STATUS_OK;
+        TRY(status);
+        along[i] = 0;
+        for (int j = 0; j < size; j++) along[i] += (points[2]->x[j] - points[0]->x[j]) * x[j];
+        key[i] = points[i]->x[k];
+        finer_key[i] = x[k];
+    }
+    vertex(along, key, &gain);
+    vertex(along, finer_key, &finer_gain);
+    *error = 2 * fabs(walk->options->to - walk->options->from) * fabs(finer_key[1] + finer_gain - key[1] - gain);
+    return STATUS_OK;
+}
+
+/* The parts of a bar that the discretisation adds, for the threshold at point number at; NaN: unknown. */
+static enum status find_discretisations(struct walk *walk, int at, struct branch_threshold *threshold) {
+    const struct branch_point *const point = walk->branch->point[at];
+    double *const part[] = {[HALF_INTERVAL] = &threshold->by_interval, [FINER_BODIES] = &threshold->by_bodies};
+    enum status status = STATUS_OK;
+    for (enum discretisation finer = HALF_INTERVAL; finer <= FINER_BODIES && status == STATUS_OK; finer++) {
+        walk->discretisation = finer;
+        *part[finer] = NAN;
+        status = point->label == fold ? find_discretisation_of_fold(walk, at, part[finer])
+                                      : find_discretisation(walk, point, threshold->slope, part[finer]);
+    }
+    walk->discretisation = GIVEN;
+    return status;
 }
 
 /* Locate the change of stability between points number at and at + 1. If this fails with STATUS_SOLVER or
@@ -566,10 +631,7 @@ static enum status locate_threshold(struct walk *walk, int at) {
         TRY(find_error_of_key(walk, nearest, &threshold.by_state));
         // at a fold the excess has no slope over the key, which stands still
         if (point->label != fold) threshold.slope = found.slope / rate;
-        if (walk->options->to_threshold && point->label != fold) {
-            TRY(find_discretisation(walk, point, threshold.slope, false, &threshold.by_interval));
-            TRY(find_discretisation(walk, point, threshold.slope, true, &threshold.by_bodies));
-        }
+        if (walk->options->to_threshold) TRY(find_discretisations(walk, nearest, &threshold));
         const double by_interval = isnan(threshold.by_interval) ? 0 : threshold.by_interval;
         const double by_bodies = isnan(threshold.by_bodies) ? 0 : threshold.by_bodies;
         threshold.bar = threshold.by_error + threshold.by_secant + threshold.by_state + by_interval + by_bodies;

@@ -55,11 +55,11 @@ struct branch_threshold {
     double by_error;                    /* error of the excess over the slope */
     double by_secant;                   /* length of the last secant */
     double by_state;                    /* what a tenth of steady.tolerance changes at the nearest point */
-    double by_interval;                 /* what half the shedding interval changes; NaN: unknown, not in the bar */
-    double by_bodies;                   /* the same with twice as many edges and panels of the sheet */
-    double slope;                       /* of the excess over the key; NaN: at a fold, or the errors hide it */
-    double period;                      /* of the nearest unstable point */
-    bool is_fold;                       /* the key turns back there */
+    double by_interval;     /* twice what half the shedding interval changes; NaN: unknown, not in the bar */
+    double by_bodies;       /* the same with twice as many edges and panels of the sheet */
+    double slope;           /* of the excess over the key; NaN: at a fold, or the errors hide it */
+    double period;          /* of the nearest unstable point */
+    bool is_fold;           /* the key turns back there */
     bool is_unstable_above; /* whether the state is unstable, or at a fold gone, at larger values of the key */
 };
 

@@ -17,8 +17,9 @@ static struct model {
     double (*change)(double u, double key), (*excess)(double u, double key);
     bool touches; /* a second evaluation at a state near the threshold meets a contact */
     double per_second,
-        per_panel;        /* excess by the shedding interval, s-1, and by the width of the panels of the sheet */
-    bool no_finer_bodies; /* a state with more than 25 nodes is not found */
+        per_panel; /* excess by the shedding interval, s-1, and by the width of the panels of the sheet */
+    double moves_per_second, moves_per_panel; /* the states at another u and key: by the same two */
+    bool no_finer_bodies;                     /* a state with more than 25 nodes is not found */
     bool to_threshold;
     double last; /* u of the last state */
 } model;
@@ -35,12 +36,15 @@ enum status model_refuse(const struct case_values *values) {
 enum status model_change(const struct case_values *values, int n, const double *value, double *change,
                          const volatile sig_atomic_t *stop) {
     (void)stop;
-    const double key = key_of(values);
+    const struct fish_parameters *const fish = &values->school.fish[0];
+    const double key = key_of(values), moves = model.moves_per_second * values->school.shedding_interval +
+                                               model.moves_per_panel / (fish->sheet_points - 1);
     assert_int_equal(n, 1);
+    if (model.no_finer_bodies && fish->nodes > 25) return status_fail(STATUS_SOLVER, "no state");
     if (model.touches && fabs(value[0] - model.last) <= 0 && fabs(model.excess(value[0], key)) < 0.01) {
         return status_fail(STATUS_CONTACT, "a and b touch");
     }
-    change[0] = model.change(value[0], key);
+    change[0] = model.change(value[0] - moves, key - moves);
     return STATUS_OK;
 }
 
@@ -116,6 +120,12 @@ static double excess_of_fold(double u, double key) {
     return -u / 2;
 }
 
+/* The fold is at u = 0.005 where the interval and the panels move it. */
+static double excess_of_moved_fold(double u, double key) {
+    (void)key;
+    return -(u - 0.005) / 2;
+}
+
 /* The only threshold of a model while the heave goes from one value to another. */
 static struct branch_threshold only_threshold(struct model of, double from, double to) {
     struct branch *branch;
@@ -188,4 +198,25 @@ TEST(a_fold_has_no_slope_over_the_key) {
     // the states are known to the tolerance, and so is the key where they turn
     NEAR(found.value, 0.5, 1e-6, 0);
     assert_true(isnan(found.slope));
+}
+
+TEST(the_bar_of_a_fold_contains_that_of_a_fine_discretisation) {
+    // at an interval of 0.05 s and 48 panels the fold is higher by 0.01, and lower by 0.005
+    struct model of = {.start = 0.5,
+                       .change = change_of_fold,
+                       .excess = excess_of_moved_fold,
+                       .moves_per_second = 0.2,
+                       .moves_per_panel = -0.24,
+                       .to_threshold = true};
+    const struct branch_threshold found = only_threshold(of, 0.75, 0.25);
+    assert_true(found.is_fold);
+    NEAR(found.value, 0.505, 1e-5, 0);
+    NEAR(found.by_interval, 0.01, 1e-4, 0);
+    NEAR(found.by_bodies, 0.005, 1e-4, 0);
+    NEAR(found.bar, found.by_error + found.by_secant + found.by_state + 0.015, 2e-4, 0);
+
+    of.no_finer_bodies = true;
+    const struct branch_threshold less = only_threshold(of, 0.75, 0.25);
+    assert_true(isnan(less.by_bodies));
+    NEAR(less.bar, found.bar - 0.005, 2e-4, 0);
 }
