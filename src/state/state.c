@@ -33,7 +33,7 @@ struct state *state_create(struct arena *parent, const struct school *school) {
         const struct fish *const fish = &school->fish[f];
         wake_create(arena, &state->wake[f], 16);
         state->wake[f].forms = forms;
-        state->wake[f].aged = (1 - fish->wake_part) * school->lifetime;
+        state->wake[f].aged = wake_aged(school, fish->wake_part);
         state->wake[f].has_markers = school->shedding == SHEDDING_SHEET;
 
         struct history *const history = &state->history[f];

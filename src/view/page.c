@@ -287,8 +287,8 @@ static enum status page_write_wakes(const struct page *page) {
             wakes.count[place]++;
             wakes.number[wakes.rows.n_places + n] = (int32_t)(number / stride);
             memcpy(wakes.xy + 2 * n, wakes.x + 2 * v, 2 * sizeof *wakes.x);
-            const double aged = (1 - reader->wake_part[f]) * page->school.lifetime;
-            const double strength = wake_strength(&page->school, t - wakes.birth[v] + aged);
+            const double age = t - wakes.birth[v] + wake_aged(&page->school, reader->wake_part[f]);
+            const double strength = wake_strength(&page->school, age);
             wakes.strength[wakes.rows.n_places + n++] = (float)(wakes.circulation[v] * strength);
         }
         TRY(rows_add(page, &wakes.rows, i, row, n, wakes.xy));

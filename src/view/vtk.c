@@ -205,7 +205,7 @@ static enum status vtk_write_wakes(const struct export *export, struct arena *ar
     for (size_t i = 0; i < slots; i++) {
         if (!isfinite(circulation[i])) continue;
         age[n] = t - birth[i];
-        const double aged = (1 - reader->wake_part[i / reader->length[VORTEX]]) * export->school.lifetime;
+        const double aged = wake_aged(&export->school, reader->wake_part[i / reader->length[VORTEX]]);
         circulation[n] = circulation[i] * wake_strength(&export->school, age[n] + aged);
         x[2 * n] = x[2 * i];
         x[2 * n + 1] = x[2 * i + 1];

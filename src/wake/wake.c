@@ -81,6 +81,10 @@ void wake_set_tail(struct wake *wake, const double velocity[2], const double tan
     memcpy(wake->tail_tangent, tangent, sizeof wake->tail_tangent);
 }
 
+double wake_aged(const struct school *school, double part) {
+    return (1 - part) * school->lifetime;
+}
+
 double wake_age(const struct wake *wake, int i, double t) {
     return t - wake->birth[i] + wake->aged;
 }

@@ -61,6 +61,9 @@ void wake_places(const struct wake *wake, double interval, double tau, double *r
  * (fish.wake_lifetime) the time since the release and the difference of the lifetimes. */
 double wake_age(const struct wake *wake, int i, double t);
 
+/* That difference for a wake with this part of the lifetime, s. */
+double wake_aged(const struct school *school, double part);
+
 /* The label of marker i, or circulation of vortex i, without decay; of all (n_vortex). */
 double wake_label(const struct wake *wake, int i, double interval, double tau);
 void wake_labels(const struct wake *wake, double interval, double tau, double *restrict label);
