@@ -256,54 +256,65 @@ static void find_responses(const struct disturbances *all) {
     }
 }
 
-/* The bar of a modulus is twice its root mean square deviation under noise of random sign, the change from one size
- * to the other, and the change by one of the last beats of the memory, in quadrature. A multiplier below its error
- * has decayed: 0. noise, sizes, memory: the three of the largest multiplier. */
-static enum status find_errors(struct arena *arena, const struct disturbances *all, struct steady_multipliers *found,
-                               double *noise, double *sizes, double *memory) {
-    const int n = all->problem->n_unknowns, n_last = all->n_memory > MEMORY + 1 ? 2 : 1;
-    double *real, *imaginary, *of[SIZES];
-    uint64_t random = 1;
-    NEW(arena, real, n);
-    NEW(arena, imaginary, n);
-    for (int s = 0; s < SIZES; s++) NEW(arena, of[s], n);
+static enum status find_moduli(const struct disturbances *all, int n_memory, const double *response, double *modulus) {
+    const int n = all->problem->n_unknowns;
+    double *real, *imaginary;
+    ARENA(scratch, all->arena, "the multipliers of other responses");
+    NEW(scratch, real, n);
+    NEW(scratch, imaginary, n);
+    TRY(newton_multipliers(scratch, n, n_memory, response, real, imaginary, NULL));
+    for (int i = 0; i < n; i++) modulus[i] = hypot(real[i], imaginary[i]);
+    return STATUS_OK;
+}
 
-    memset(found->error, 0, (size_t)n * sizeof *found->error);
+/* What changes the modulus of the largest multiplier. */
+struct changes {
+    double noise;  /* of random sign, twice the root mean square */
+    double sizes;  /* from one size of the disturbances to the other */
+    double memory; /* without one of the last beats */
+};
+
+/* The bar of a modulus consists of these changes, in quadrature. A multiplier below its error has decayed: 0. */
+static enum status find_errors(const struct disturbances *all, struct steady_multipliers *found,
+                               struct changes *changes) {
+    const int n = all->problem->n_unknowns, n_last = all->n_memory > MEMORY + 1 ? 2 : 1;
+    double *size, *other, *change, *square = found->error;
+    uint64_t random = 1;
+    ARENA(scratch, all->arena, "the errors of the multipliers");
+    NEW(scratch, size, n);
+    NEW(scratch, other, n);
+    NEW(scratch, change, n);
+    for (int i = 0; i < n; i++) size[i] = hypot(found->real[i], found->imaginary[i]);
+
+    memset(square, 0, (size_t)n * sizeof *square);
     for (int s = 0; s < SAMPLES; s++) {
         for (int k = 0; k < n * n * all->n_memory; k++) {
             random = random * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
             all->sample[k] = all->response[k] + (random >> 63 ? all->error[k] : -all->error[k]);
         }
-        TRY(newton_multipliers(arena, n, all->n_memory, all->sample, real, imaginary, NULL));
-        for (int i = 0; i < n; i++) {
-            const double away = hypot(real[i], imaginary[i]) - hypot(found->real[i], found->imaginary[i]);
-            found->error[i] += 4 * away * away / SAMPLES;
-        }
+        TRY(find_moduli(all, all->n_memory, all->sample, other));
+        for (int i = 0; i < n; i++) square[i] += 4 * (other[i] - size[i]) * (other[i] - size[i]) / SAMPLES;
     }
-    *noise = sqrt(found->error[0]);
+    changes->noise = sqrt(square[0]);
 
-    for (int s = 0; s < SIZES; s++) {
-        TRY(newton_multipliers(arena, n, all->n_memory, all->central[s], real, imaginary, NULL));
-        for (int i = 0; i < n; i++) of[s][i] = hypot(real[i], imaginary[i]);
-    }
-    for (int i = 0; i < n; i++) found->error[i] += pow(of[1][i] - of[0][i], 2);
-    *sizes = fabs(of[1][0] - of[0][0]);
+    TRY(find_moduli(all, all->n_memory, all->central[0], change));
+    TRY(find_moduli(all, all->n_memory, all->central[1], other));
+    for (int i = 0; i < n; i++) square[i] += (other[i] - change[i]) * (other[i] - change[i]);
+    changes->sizes = fabs(other[0] - change[0]);
 
-    memset(of[0], 0, (size_t)n * sizeof *of[0]);
+    memset(change, 0, (size_t)n * sizeof *change);
     for (int m = 1; m <= n_last; m++) {
-        TRY(newton_multipliers(arena, n, all->n_memory - m, all->response, real, imaginary, NULL));
-        for (int i = 0; i < n; i++) {
-            const double size = hypot(found->real[i], found->imaginary[i]);
-            of[0][i] = larger(of[0][i], fabs(hypot(real[i], imaginary[i]) - size));
-        }
+        TRY(find_moduli(all, all->n_memory - m, all->response, other));
+        for (int i = 0; i < n; i++) change[i] = larger(change[i], fabs(other[i] - size[i]));
     }
-    for (int i = 0; i < n; i++) found->error[i] = sqrt(found->error[i] + of[0][i] * of[0][i]);
-    *memory = of[0][0];
+    for (int i = 0; i < n; i++) found->error[i] = sqrt(square[i] + change[i] * change[i]);
+    changes->memory = change[0];
 
+    // both of a pair have the larger error
     for (int i = 0; i < n; i++) {
         const bool is_pair = found->imaginary[i] > 0 && i + 1 < n;
         const double error = is_pair ? larger(found->error[i], found->error[i + 1]) : found->error[i];
-        const bool is_lost = hypot(found->real[i], found->imaginary[i]) <= error;
+        const bool is_lost = size[i] <= error;
         for (int k = i; k <= i + is_pair; k++) {
             if (is_lost) found->real[k] = found->imaginary[k] = 0;
             found->error[k] = is_lost ? 0 : error;
@@ -330,12 +341,14 @@ static enum status follow_until_known(struct disturbances *all, struct steady_mu
         find_responses(all);
         TRY(newton_multipliers(all->arena, n, all->n_memory, all->response, found->real, found->imaginary,
                                found->mode));
-        double noise, sizes, memory, least = INFINITY;
-        TRY(find_errors(all->arena, all, found, &noise, &sizes, &memory));
+        struct changes changes;
+        double least = INFINITY;
+        TRY(find_errors(all, found, &changes));
         for (int j = 0; j < n; j++) least = smaller(least, all->sizes[j]);
-        if (sizes > larger(telling, noise) && least / 2 >= least_disturbance) {
+        const bool is_loud = changes.noise >= loudest, remembers = changes.memory > larger(forgotten, changes.noise);
+        if (changes.sizes > larger(telling, changes.noise) && least / 2 >= least_disturbance) {
             halve_sizes(all);
-        } else if (memory > larger(forgotten, noise) && noise < loudest && all->n_memory + MEMORY <= most) {
+        } else if (remembers && !is_loud && all->n_memory + MEMORY <= most) {
             all->n_memory += MEMORY;
         } else {
             return STATUS_OK;
