@@ -568,6 +568,7 @@ static enum status find_discretisations(struct walk *walk, int at, struct branch
                                       : find_discretisation(walk, point, threshold->slope, part[finer]);
     }
     walk->discretisation = GIVEN;
+    walk->has_last = false;
     return status;
 }
 
