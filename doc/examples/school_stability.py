@@ -2,7 +2,7 @@
 """Chart when plates in line hold together: the amplitude of the heave below which a school falls apart.
 
     doc/examples/school_stability.py [--plates 2 3 4 5 6] [--table school_stability.csv] [--figure school_stability.png]
-                                     [--wake 0.5 3] [--set KEY=VALUE]
+                                     [--wake 1 3] [--set KEY=VALUE]
 
 Plates that heave in line keep places about one wavelength (the distance covered in a beat) apart. For each amplitude the
 program searches for the steady state of two plates, then for that of three, and so on: a further plate starts as far behind
@@ -28,11 +28,11 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 import shoal  # noqa: E402
 
 CASE = str(pathlib.Path(__file__).resolve().parents[2] / "cases" / "studies" / "school_stability.yaml")
-HEAVES = [0.3, 0.25, 0.2, 0.175, 0.17, 0.16, 0.15, 0.14, 0.13, 0.12, 0.1, 0.075]  # m
+HEAVES = [0.2, 0.18, 0.17, 0.165, 0.16, 0.155, 0.15, 0.145, 0.14, 0.135, 0.13, 0.125, 0.12, 0.11, 0.1, 0.09, 0.075]  # m
 LENGTH = 1.0  # m
-WITHIN = 1.2  # states whose amplitude differs by less than this factor from a crossing count for the threshold
+WITHIN = 1.12  # states whose amplitude differs by less than this factor from a crossing count for the threshold
 LEAST_ERROR = 1e-3  # of a multiplier: two states without noise are no better known
-WAKE = 0.5, 3.0  # beats for which all wakes keep their strength behind the last plate, and in which they then lose it
+WAKE = 1.0, 3.0  # beats for which all wakes keep their strength behind the last plate, and in which they then lose it
 SPEED, EXPONENT = 3.87, 1.55  # m s-1 at a heave of 0.15 m, and how it grows with the heave: a start of the search
 COLUMNS = ["plates", "heave", "speed", "multiplier", "error", "period", "cpu", "places"]
 
@@ -209,11 +209,11 @@ def draw(path, rows):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--plates", type=int, nargs="+", default=[2, 3, 4, 5, 6, 7, 8], metavar="N", help="numbers of plates (2 to 8)")
-    parser.add_argument("--heaves", type=float, nargs="+", default=HEAVES, metavar="HEAVE", help="amplitudes, m (0.3 to 0.075)")
+    parser.add_argument("--heaves", type=float, nargs="+", default=HEAVES, metavar="HEAVE", help="amplitudes, m (0.2 to 0.075)")
     parser.add_argument("--table", default="school_stability.csv", metavar="FILE", help="of all states; it may have some already (school_stability.csv)")
     parser.add_argument("--figure", metavar="PICTURE", help="draw the chart")
     parser.add_argument("--wake", type=float, nargs=2, default=WAKE, metavar=("WHOLE", "DECAY"),
-                        help="beats for which all wakes keep their strength behind the last plate, and in which they then lose it (0.5 3)")
+                        help="beats for which all wakes keep their strength behind the last plate, and in which they then lose it (1 3)")
     parser.add_argument("--set", nargs="+", default=[], metavar="KEY=VALUE", help="other values of keys of the case")
     options = parser.parse_args()
     rows = fill(read_table(options.table), options.plates, options.heaves, options.table, options.wake, options.set)
