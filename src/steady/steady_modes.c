@@ -256,10 +256,11 @@ static void find_responses(const struct disturbances *all) {
     }
 }
 
+// the moduli of the multipliers of other responses, of which the first n_memory beats count
 static enum status find_moduli(const struct disturbances *all, int n_memory, const double *response, double *modulus) {
     const int n = all->problem->n_unknowns;
     double *real, *imaginary;
-    ARENA(scratch, all->arena, "the multipliers of other responses");
+    ARENA(scratch, all->arena, "moduli");
     NEW(scratch, real, n);
     NEW(scratch, imaginary, n);
     TRY(newton_multipliers(scratch, n, n_memory, response, real, imaginary, NULL));
