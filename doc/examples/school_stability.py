@@ -28,7 +28,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 import shoal  # noqa: E402
 
 CASE = str(pathlib.Path(__file__).resolve().parents[2] / "cases" / "studies" / "school_stability.yaml")
-HEAVES = [0.2, 0.18, 0.17, 0.165, 0.16, 0.155, 0.15, 0.145, 0.14, 0.135, 0.13, 0.125, 0.12, 0.11, 0.1, 0.09, 0.075]  # m
+HEAVES = [0.2, 0.18, 0.17, 0.165, 0.16, 0.1575, 0.155, 0.1525, 0.15, 0.145, 0.14, 0.135, 0.13, 0.125, 0.12, 0.11, 0.1, 0.09, 0.075]  # m
 LENGTH = 1.0  # m
 WITHIN = 1.12  # states whose amplitude differs by less than this factor from a crossing count for the threshold
 LEAST_ERROR = 1e-3  # of a multiplier: two states without noise are no better known
