@@ -556,14 +556,13 @@ static enum status find_discretisation_of_fold(struct walk *walk, int at, double
     return STATUS_OK;
 }
 
-/* The parts of a bar that the discretisation adds, for the threshold at point number at; NaN: unknown. */
+/* The parts of a bar that the discretisation adds, for the threshold at point number at. Unknown ones stay NaN. */
 static enum status find_discretisations(struct walk *walk, int at, struct branch_threshold *threshold) {
     const struct branch_point *const point = walk->branch->point[at];
     double *const part[] = {[HALF_INTERVAL] = &threshold->by_interval, [FINER_BODIES] = &threshold->by_bodies};
     enum status status = STATUS_OK;
     for (enum discretisation finer = HALF_INTERVAL; finer <= FINER_BODIES && status == STATUS_OK; finer++) {
         walk->discretisation = finer;
-        *part[finer] = NAN;
         status = point->label == fold ? find_discretisation_of_fold(walk, at, part[finer])
                                       : find_discretisation(walk, point, threshold->slope, part[finer]);
     }
